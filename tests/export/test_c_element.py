@@ -211,9 +211,9 @@ def test_the_joint_is_fixed_where_the_law_is_that_of_one_joint():
         return next(modulus for modulus in (100.0, 200.0, 300.0) if modulus > 10.0 * joint.liner_thickness)
 
     for element, reason in (
-        (ForceElement(bs.Tabulated(), HIP), "tabulated for this joint"),
+        (ForceElement(bs.Tabulated(), HIP), "the law of tabulated is computed for this joint"),
         (ForceElement(bs.HessForsbach(), HIP, lubricant=bs.Lubricant()), "film of the lubricant"),
-        (ForceElement(bs.RadialFoundation(modulus=iterated), HIP), "branches or iterations"),
+        (ForceElement(bs.RadialFoundation(modulus=iterated), HIP), "the law of iterated-linear is computed"),
     ):
         assert reason in reason_of_fixed_joint(element)
         assert len(CElement(element=element).tunables) == 7

@@ -176,7 +176,8 @@ def test_fmpy_simulates_the_unit_to_the_reference(version, kind, late, folder, f
     found = fmpy.simulate_fmu(path, fmi_type=kind, input=given, stop_time=0.1, output_interval=1e-3)
     for name in reference.dtype.names[1:]:  # a step of a co-simulation returns the loads of the input before it
         wanted = reference[name][: len(reference) - late]
-        assert_allclose(found[name][late:], wanted, rtol=1e-12, atol=1e-12 * abs(wanted).max())
+        near = 2e-9 if name in ("half_angle", "max_pressure") else 1e-12  # Python reads these two from curves
+        assert_allclose(found[name][late:], wanted, rtol=near, atol=near * abs(wanted).max())
 
 
 @pytest.mark.long
@@ -221,7 +222,8 @@ def test_a_host_receives_the_load_and_its_slopes(host):
     status, (force, moment, pressure) = host.get("force[3]", "moment[1]", "max_pressure")
     assert status == GOOD
     wanted = (load.force[2], 1e-3 * load.moment[0], 1e6 * load.max_pressure)
-    assert_allclose((force, moment, pressure), wanted, rtol=1e-12)
+    assert_allclose((force, moment), wanted[:2], rtol=1e-12)
+    assert_allclose(pressure, wanted[2], rtol=2e-9)  # Python reads it from a curve
     assert host.messages == []  # the contact is valid
     status, slope = host.directional("force[3]", "position[2]")
     assert status == GOOD
@@ -454,4 +456,4 @@ def test_the_command_writes_a_unit_with_a_ball_and_bristles(tmp_path):
     listed = {each.get("name"): each for each in description(tmp_path / "ball.fmu").find("ModelVariables")}
     assert listed["mass"].get("start") == "2.0"
     assert listed["deflection[4]"].get("causality") == "local"
-    assert "StopTime, 0.02" in (tmp_path / "ball_ref.opt").read_text()
+    assert "StopTime, 0.0282" in (tmp_path / "ball_ref.opt").read_text()  # 20 ms times the root of the mass in kg

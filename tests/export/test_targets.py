@@ -50,7 +50,9 @@ def check_loads(force, moment, *contact):
     wanted = LOSSY(*IN_MM)
     assert_allclose(force, wanted.force, rtol=1e-12, atol=1e-9)
     assert_allclose(moment, 1e-3 * np.array(wanted.moment), rtol=1e-12, atol=1e-12)
-    assert_allclose(contact, (1e-3 * wanted.energy, wanted.half_angle, 1e6 * wanted.max_pressure), rtol=1e-12)
+    assert_allclose(contact[0], 1e-3 * wanted.energy, rtol=1e-12)
+    # Python reads half angle and pressure from curves within 1e-9
+    assert_allclose(contact[1:], (wanted.half_angle, 1e6 * wanted.max_pressure), rtol=2e-9)
 
 
 @pytest.fixture(scope="module")

@@ -25,7 +25,7 @@ from ..dynamics.reaction import Elastic
 from ..models.closed_form import ClosedFormSolution
 from ..problem import Joint
 from .recorder import Part, Recorded, Tape, directional_derivatives
-from .tunable import joint_of_inputs, loss_tunables, reason_of_fixed_joint
+from .tunable import TUNABLES, has_formulas, joint_of_inputs, reason_of_fixed_joint, tunables_of
 
 ENERGY, HALF_ANGLE, MAX_PRESSURE = "energy_curve", "half_angle_curve", "max_pressure_curve"
 STRESS_RATIO = "stress_ratio_curve"
@@ -70,15 +70,18 @@ class Recording:
 
     @cached_property
     def joint(self) -> Joint | None:
-        """Joint with its tunable numbers as inputs of the tape; None if the law is that of one joint."""
-        return None if reason_of_fixed_joint(self.element) else joint_of_inputs(self.element, self.tape)
+        """Joint of the formulas, with its tunable numbers as inputs of the tape; None if the law is a curve."""
+        is_fixed = bool(reason_of_fixed_joint(self.element))
+        joint = self.element.joint.with_floats() if is_fixed else joint_of_inputs(self.element, self.tape)
+        return joint if has_formulas(self.element, joint, Tape()) else None
 
     @cached_property
     def constants(self) -> Constants:
         """Constants of the force element, in which the tunable parameters are inputs of the tape."""
         tuned: dict[str, Any] = {
-            parameter.constant: self.tape.input(f"p->{parameter.name}", tunable=True)
-            for parameter in loss_tunables(self.element)
+            parameter.path.removeprefix("constants."): self.tape.input(f"p->{parameter.name}", tunable=True)
+            for parameter in tunables_of(self.element)
+            if parameter in TUNABLES
         }
         if "static" in tuned:
             tuned["static"] = where(tuned["static"] > tuned["sliding"], tuned["static"], tuned["sliding"])
@@ -104,24 +107,18 @@ class Recording:
     def curves(self) -> dict[str, OctaveCurve]:
         """Fitted curves that the C program evaluates, by name.
 
-        They are those of half angle, largest pressure and energy of one joint, or the ratio of the largest von Mises
-        stress to the largest pressure over the half angle.
+        A law that is no formula has curves of energy, half angle and largest pressure over the indentation. A formula
+        has one of the ratio of von Mises stress to largest pressure over the half angle, for its validity.
         """
+        element = self.element
         if self.joint is not None:
-            return (
-                {} if self.joint.liner.yield_stress is None else {STRESS_RATIO: _stress_ratio_curve(self.element.joint)}
-            )
-        half_angle, max_pressure = self.element.curves
-        curves = {HALF_ANGLE: half_angle, MAX_PRESSURE: max_pressure}
-        potential = self.element.potential
-        if isinstance(potential, CurvePotential):
-            curves[ENERGY] = potential.curve
-        else:
-            try:
-                potential(Tape().input("depth"))
-            except (TypeError, AttributeError, ValueError):  # iterations and data-dependent branches are not recorded
-                curves[ENERGY] = curve_potential(self.element.model, self.element.joint).curve
-        return curves
+            yields = element.joint.liner.yield_stress is not None
+            return {STRESS_RATIO: _stress_ratio_curve(element.joint)} if yields else {}
+        half_angle, max_pressure = element.curves
+        energy = element.potential
+        if not isinstance(energy, CurvePotential):
+            energy = curve_potential(element.model, element.joint)
+        return {HALF_ANGLE: half_angle, MAX_PRESSURE: max_pressure, ENERGY: energy.curve}
 
     @cached_property
     def centre(self) -> BallCentre:
@@ -136,15 +133,12 @@ class Recording:
 
     def _potential(self, depth: Recorded) -> tuple[Part, Part, Part]:
         """Record energy, force and stiffness at an indentation."""
-        inside, model = self._within_range(depth), self.element.model
-        if self.joint is not None:
-            energy, force, stiffness = (
-                getattr(model, law)(self.joint, inside) for law in ("energy", "force", "stiffness")
-            )
-        elif ENERGY in self.curves:
+        inside = self._within_range(depth)
+        if self.joint is None:
             energy, force, stiffness = self.tape.curve(ENERGY, inside, 3)
         else:
-            energy, force, stiffness = self.element.potential(inside)
+            contact = self._pressed(self.joint, inside)
+            energy, force, stiffness = contact.energy, contact.force, contact.stiffness
         return self._continued((energy, force, stiffness), depth - inside)
 
     def _within_range(self, depth: Part) -> Part:

@@ -27,11 +27,6 @@ class Tunable:
     meaning: str
     above: bool = False  # True for a parameter above 0; false for 0 or more
 
-    @property
-    def constant(self) -> str:
-        """Field of the `Constants` of a force element, or number of a joint."""
-        return self.path.rpartition(".")[2]
-
     def value(self, element: ForceElement | PreloadedElement) -> float:
         """Return the value of the parameter in an element."""
         return float(attrgetter(self.path)(element))
@@ -91,7 +86,7 @@ def joint_tunables(element: ForceElement | PreloadedElement) -> tuple[Tunable, .
     return tuple(number for number in JOINT_TUNABLES if math.isfinite(number.value(element)))
 
 
-def joint_of_inputs(element: ForceElement, tape: Tape) -> Joint:
+def joint_of_inputs(element: ForceElement | PreloadedElement, tape: Tape) -> Joint:
     """Return the joint of an element with its tunable numbers as inputs of a tape."""
     joint, tunables = element.joint.with_floats(), joint_tunables(element)
     numbers = list(joint.numbers())
@@ -101,27 +96,30 @@ def joint_of_inputs(element: ForceElement, tape: Tape) -> Joint:
     return joint.with_numbers(numbers)
 
 
-def reason_of_fixed_joint(element: ForceElement | PreloadedElement) -> str:
-    """Say why the numbers of the joint cannot be tuned in the exported element; empty if they can."""
+def has_formulas(element: ForceElement | PreloadedElement, joint: Joint, tape: Tape) -> bool:
+    """Check if the law of an element can be recorded for a joint: a closed form without iterations and branches."""
     if not isinstance(element, ForceElement) or not isinstance(element.potential, FormulaPotential | SpringPotential):
-        return f"the law of {element.model.name} is tabulated for this joint"
-    if element.constants.film_damping > 0.0:
-        return "the film of the lubricant is computed for this joint"
-    tape, model = Tape(), cast(ClosedForm, element.model)
-    law = ClosedFormSolution(model=model, joint=joint_of_inputs(element, tape), indentation=tape.input("depth"))
+        return False
+    law = ClosedFormSolution(model=cast(ClosedForm, element.model), joint=joint, indentation=tape.input("depth"))
     try:
         law.energy, law.stiffness, law.half_angle, law.max_pressure  # noqa: B018 - records them
     except (TypeError, AttributeError, ValueError):
-        return f"the formulas of {element.model.name} have branches or iterations, evaluated for this joint"
-    return ""
+        return False
+    return True
 
 
-def loss_tunables(element: ForceElement | PreloadedElement) -> tuple[Tunable, ...]:
-    """List the adjustable parameters of damping and friction; the numbers of bristles are constants."""
-    return DAMPING_TUNABLES if isinstance(element.friction, Bristles) else TUNABLES
+def reason_of_fixed_joint(element: ForceElement | PreloadedElement) -> str:
+    """Say why the numbers of the joint cannot be tuned in the exported element; empty if they can."""
+    tape = Tape()
+    if not has_formulas(element, joint_of_inputs(element, tape), tape):
+        return f"the law of {element.model.name} is computed for this joint"
+    return "the film of the lubricant is computed for this joint" if element.constants.film_damping > 0.0 else ""
 
 
 def tunables_of(element: ForceElement | PreloadedElement) -> tuple[Tunable, ...]:
-    """List the adjustable parameters of an exported element, in the order of the C structure."""
-    losses = loss_tunables(element)
+    """List the adjustable parameters of an exported element, in the order of the C structure.
+
+    The numbers of bristles are constants.
+    """
+    losses = DAMPING_TUNABLES if isinstance(element.friction, Bristles) else TUNABLES
     return losses if reason_of_fixed_joint(element) else (*losses, *joint_tunables(element))

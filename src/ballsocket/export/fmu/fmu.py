@@ -24,7 +24,7 @@ from ..compiler import LIBRARY_ENDING, THIS_PLATFORM, NoCompiler, Platform, comp
 from ..recording import bristle_count
 from ..targets import ExportJob
 from ..time_steps import TimeStepAdvice
-from .reference_results import STEP, reference_tables, suggested_stop
+from .reference_results import reference_tables, suggested_times
 from .variables import UNITS, Variable, variables
 
 _ARCHIVE_DATE = (1980, 1, 1, 0, 0, 0)  # fixed date of all files, so that equal elements give equal archives
@@ -53,7 +53,7 @@ def fmi2_description(fmu: Fmu) -> bytes:
     for parent in (SubElement(root[0], "SourceFiles"), files):
         for source in fmu.c_sources:
             SubElement(parent, "File", name=source)
-    variables_element = _add_units_and_logs(root, fmu.ball_mass)
+    variables_element = _add_units_and_logs(root, fmu)
     for variable in fmu.variables:
         scalar_variable = SubElement(variables_element, "ScalarVariable", _variable_attributes(variable))
         SubElement(scalar_variable, "Real", _number_attributes(variable))
@@ -69,7 +69,7 @@ def fmi2_description(fmu: Fmu) -> bytes:
 def fmi3_description(fmu: Fmu) -> bytes:
     """Return the XML file `modelDescription.xml` of an FMU for FMI 3.0, as bytes."""
     root = _description_root(fmu, {"instantiationToken": fmu.guid})
-    variables_element = _add_units_and_logs(root, fmu.ball_mass)
+    variables_element = _add_units_and_logs(root, fmu)
     time = {"name": "time", "valueReference": "0", "causality": "independent", "variability": "continuous"}
     SubElement(variables_element, "Float64", time, unit="s")
     for variable in fmu.variables:
@@ -125,8 +125,7 @@ def layered_standard_files(fmu: Fmu) -> dict[str, bytes]:
     related = {"type": "application/x-ma-hs-experiments", "source": f"{name}.exp", "role": "experiment/smoke-test"}
     SubElement(manifest, "Related", related, description=about)
     experiment = SubElement(experiments, "Experiment", name=name)
-    times = {"startTime": "0", "stopTime": str(suggested_stop(fmu.ball_mass)), "stepSize": str(STEP)}
-    SubElement(experiment, "TransientSimulation", times)
+    SubElement(experiment, "TransientSimulation", _times(fmu))
     SubElement(experiment, "Stimuli", source=f"{name}_in.csv")
     SubElement(experiment, "References", source=f"{name}_ref.csv")
     return {
@@ -135,6 +134,11 @@ def layered_standard_files(fmu: Fmu) -> dict[str, bytes]:
         f"{_LS_REF}/{name}_in.csv": given.encode(),
         f"{_LS_REF}/{name}_ref.csv": reference.encode(),
     }
+
+
+def _times(fmu: Fmu) -> dict[str, str]:
+    stop, step = suggested_times(fmu.ball_mass)
+    return {"startTime": "0", "stopTime": repr(stop), "stepSize": repr(step)}
 
 
 _LS_REF = "extra/org.fmi-standard.fmi-ls-ref"
@@ -160,7 +164,7 @@ def _description_root(fmu: Fmu, identifiers: dict[str, str]) -> Element:
     return root
 
 
-def _add_units_and_logs(root: Element, ball_mass: float | None) -> Element:
+def _add_units_and_logs(root: Element, fmu: Fmu) -> Element:
     """Add units, log categories and the default experiment to a model description, and return its variables."""
     units = SubElement(root, "UnitDefinitions")
     for name, powers in UNITS.items():
@@ -169,7 +173,7 @@ def _add_units_and_logs(root: Element, ball_mass: float | None) -> Element:
     categories = SubElement(root, "LogCategories")
     for name, meaning in LOG_CATEGORIES.items():
         SubElement(categories, "Category", name=name, description=meaning)
-    SubElement(root, "DefaultExperiment", startTime="0", stopTime=str(suggested_stop(ball_mass)), stepSize=str(STEP))
+    SubElement(root, "DefaultExperiment", _times(fmu))
     return SubElement(root, "ModelVariables")
 
 

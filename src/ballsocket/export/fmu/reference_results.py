@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -17,15 +18,18 @@ from .variables import variables
 
 _MM, _MPA = 1e-3, 1e6
 
-STEP = 1e-3  # suggested step of a simulation in s
-_STOP, _STOP_OF_BALL = 0.1, 0.02  # suggested ends of a simulation in s
+_STOP, _STEP = 0.1, 1e-3  # suggested end and step of a simulation in s
+_STOP_OF_BALL, _STEPS_OF_BALL = 0.02, 20  # suggested end in s with a ball of 1 kg inside, and number of steps
 _TOUCH = 0.22  # time of the first touch of a pushed ball over the simulated time; between two outputs
 _TOLERANCE = 1e-10  # relative and absolute tolerance of the integration of states, as in `simulate`
 
 
-def suggested_stop(ball_mass: float | None) -> float:
-    """Return the suggested end of a simulation in s, without or with a ball inside."""
-    return _STOP if ball_mass is None else _STOP_OF_BALL
+def suggested_times(ball_mass: float | None) -> tuple[float, float]:
+    """Return the suggested end and step of a simulation in s; a bounce takes a time as the root of the mass in kg."""
+    if ball_mass is None:
+        return _STOP, _STEP
+    stop = _STOP_OF_BALL * math.sqrt(ball_mass)
+    return stop, stop / _STEPS_OF_BALL
 
 
 def write_cross_check(
@@ -36,7 +40,8 @@ def write_cross_check(
     Raises OSError: a folder that cannot be written to.
     """
     stem, (given, reference) = path.with_suffix(""), reference_tables(element, ball_mass)
-    options = f"StartTime, 0\nStopTime, {suggested_stop(ball_mass)}\nStepSize, {STEP}\nRelTol, 1e-6\n"
+    stop, step = suggested_times(ball_mass)
+    options = f"StartTime, 0\nStopTime, {stop}\nStepSize, {step}\nRelTol, 1e-6\n"
     texts = {"in.csv": given, "ref.csv": reference, "ref.opt": options}
     inputs, results, chosen = (write_text(Path(f"{stem}_{ending}"), text) for ending, text in texts.items())
     return inputs, results, chosen
@@ -49,19 +54,20 @@ def reference_tables(element: ForceElement | PreloadedElement, ball_mass: float 
     Without a ball inside, the inputs are a prescribed motion, which is constant for bristles: hosts differ in how
     inputs vary in a step. With a ball they are a force, which pushes it through its clearance, and a torque.
     """
-    time = numpy.arange(round(suggested_stop(ball_mass) / STEP) + 1) * STEP
+    stop, step = suggested_times(ball_mass)
+    time = numpy.arange(round(stop / step) + 1) * step
     if ball_mass is None:
-        count = bristle_count(element)
-        motion = trajectory(element, numpy.full(len(time), _STOP / 2) if count else time)
-        states = numpy.hstack([motion, _integrate_deflections(element, time, motion[0])]) if count else motion
-        given, results = states_in_si(motion), reference_loads(element, states)
+        held = trajectory(element, numpy.array([_STOP / 2]))[0]
+        states = _integrate(element, time, held) if bristle_count(element) else trajectory(element, time)
+        given, results = states_in_si(states[:, :9]), reference_loads(element, states)
     else:
         distance = max(_MM * element.constants.clearance, 1e-6 * element.constants.socket_radius)
         acceleration = 2.0 * distance / (_TOUCH * time[-1]) ** 2
-        rates = numpy.array([0.3, 0.0, 1.0]) * acceleration, numpy.array([0.0, 50.0, 100.0])  # m/s², rad/s²
-        mass, inertia = ball_mass, 0.4 * ball_mass * (_MM * element.constants.ball_radius) ** 2
-        given = numpy.tile([*(mass * rates[0]), *(inertia * rates[1])], (len(time), 1))
-        states = _integrate_ball(element, time, ball_mass, rates)
+        applied = numpy.array([0.3, 0.0, 1.0]) * acceleration, numpy.array([0.0, 50.0, 100.0])  # m/s², rad/s²
+        inertia = 0.4 * ball_mass * (_MM * element.constants.ball_radius) ** 2
+        given = numpy.tile([*(ball_mass * applied[0]), *(inertia * applied[1])], (len(time), 1))
+        rest = [*(element.rest_position if isinstance(element, PreloadedElement) else (0.0, 0.0, 0.0)), *(0.0,) * 6]
+        states = _integrate(element, time, rest, ball_mass, applied)
         results = numpy.hstack([states_in_si(states[:, :9]), reference_loads(element, states)])
     listed = variables(element, ball_mass)
     inputs, outputs = (
@@ -70,41 +76,31 @@ def reference_tables(element: ForceElement | PreloadedElement, ball_mass: float 
     return _csv_text(inputs, time, given), _csv_text(outputs, time, results)
 
 
-def _integrate_deflections(element: ForceElement | PreloadedElement, time: Numbers, motion: Numbers) -> Numbers:
-    """Integrate the deflections of bristles (times, 4) in mm at a constant position, velocity and spin (9,)."""
-
-    def rates(now: float, deflection: Numbers) -> Any:
-        return load_at(element, numpy.append(motion, deflection)).deflection_rate
-
-    return _integrate(rates, time, numpy.zeros(bristle_count(element)))
-
-
-def _integrate_ball(
-    element: ForceElement | PreloadedElement, time: Numbers, mass: float, applied: tuple[Numbers, Numbers]
+def _integrate(
+    element: ForceElement | PreloadedElement,
+    time: Numbers,
+    motion: Any,
+    mass: float = math.inf,
+    applied: tuple[Any, Any] = (0.0, 0.0),
 ) -> Numbers:
-    """Integrate motion and deflections (times, 9 and 4) of a solid ball (kg) from rest at its start position.
+    """Integrate motion and deflections (times, 9 and 4) of a solid ball (kg) from a motion at the first time.
 
-    Applied force and torque give it the accelerations `applied` in m/s² and rad/s².
+    Applied force and torque give it the accelerations `applied` in m/s² and rad/s². A ball of infinite mass is held at
+    its first position, velocity and spin.
     """
+    from scipy.integrate import solve_ivp  # slow to import
+
     count, inertia = bristle_count(element), 0.4 * TONNE * mass * element.constants.ball_radius**2
-    start = numpy.zeros(9 + count)
-    if isinstance(element, PreloadedElement):
-        start[:3] = element.rest_position
 
     def rates(now: float, state: Numbers) -> Any:
         load = load_at(element, state)
+        velocity = state[3:6] if mass < math.inf else numpy.zeros(3)
         acceleration = numpy.array(load.force) / (TONNE * mass) + applied[0] / _MM
         turning = numpy.array(load.moment) / inertia + applied[1]
-        return [*state[3:6], *acceleration, *turning, *(load.deflection_rate if count else ())]
+        return [*velocity, *acceleration, *turning, *(load.deflection_rate if count else ())]
 
-    return _integrate(rates, time, start)
-
-
-def _integrate(rates: Any, time: Numbers, start: Numbers) -> Numbers:
-    from scipy.integrate import solve_ivp  # slow to import
-
-    options = {"method": "LSODA", "rtol": _TOLERANCE, "atol": _TOLERANCE, "max_step": STEP}
-    return solve_ivp(rates, (0.0, time[-1]), start, t_eval=time, **options).y.T
+    options = {"method": "LSODA", "rtol": _TOLERANCE, "atol": _TOLERANCE, "max_step": time[1]}
+    return solve_ivp(rates, (0.0, time[-1]), [*motion, *(0.0,) * count], t_eval=time, **options).y.T
 
 
 def load_at(element: ForceElement | PreloadedElement, state: Numbers) -> Any:
