@@ -33,27 +33,24 @@ _fresh = count(1)
 
 def measure() -> list[Row]:
     model, springs = bs.Sphere(), bs.Sphere(surface=bs.Springs())
-    displaced = displaced_job(model)
+    displaced = Job(lambda: model.press(JOINT, indentation=INDENTATION, tilt=TILT))
+    forced = Job(lambda: model.press(JOINT, force=3000.0, tilt=TILT))
+    jax = if_installed("jax", partial(jax_job, 64))
     with TemporaryDirectory() as folder:
         pairs = [
-            Pair("tilted cup, a new liner thickness and its first press", set_up_job(model)),
+            Pair("tilted cup, a new liner thickness and its first press", _set_up(model)),
             Pair("tilted cup, a new clearance in a known bore and its first press", _new_clearance(model)),
             Pair("tilted cup, a displacement", displaced, "CalculiX, 2954 nodes", _calculix(folder, 11.25)),
             Pair("tilted cup, a displacement", displaced, "CalculiX, 4570 nodes", _calculix(folder, 9.0)),
-            Pair("tilted cup, a force", forced_job(model)),
+            Pair("tilted cup, a force", forced),
             Pair(f"tilted cup, each of a cycle of {CYCLE} loads", _cycle(model), "springs", _cycle(springs)),
             Pair("tilted cup, each of 64 loads at once", _batch(64), "one at a time", _batch(1)),
-            Pair(
-                "tilted cup, each of 64 loads at once",
-                _batch(64),
-                "JAX, float32",
-                if_installed("jax", partial(jax_job, 64)),
-            ),
+            Pair("tilted cup, each of 64 loads at once", _batch(64), "JAX, float32", jax),
         ]
         return compare(pairs, repeats=2)
 
 
-def set_up_job(model: bs.Sphere) -> Job:
+def _set_up(model: bs.Sphere) -> Job:
     """A liner that nobody has pressed, and an empty cache on disk."""
 
     def call() -> None:
@@ -73,14 +70,6 @@ def _new_clearance(model: bs.Sphere) -> Job:
         model.press(joint, force=3000.0, tilt=TILT)
 
     return Job(call)
-
-
-def displaced_job(model: bs.Sphere) -> Job:
-    return Job(lambda: model.press(JOINT, indentation=INDENTATION, tilt=TILT))
-
-
-def forced_job(model: bs.Sphere) -> Job:
-    return Job(lambda: model.press(JOINT, force=3000.0, tilt=TILT))
 
 
 def _cycle(model: bs.Sphere) -> Job:
