@@ -14,13 +14,17 @@ import os
 import shutil
 import subprocess
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 from math import cos, pi, sin
 from pathlib import Path
+from typing import Any
 
 import numpy
 
 import ballsocket as bs
+
+from .timing import Job
 
 SCALE = 1e-3
 RIM, GROWTH, WIDEST = 120.0, 1.3, 15.0  # degrees, of the liner's elements beyond the contact
@@ -40,18 +44,15 @@ class Mesh:
     ratio: float = 1.3
 
 
-class Calculix:
-    """One joint on one mesh, pushed to some indentations in turn."""
-
-    def __init__(self, joint: bs.Joint, mesh: Mesh, depths: numpy.ndarray, folder: Path) -> None:
-        self.folder, self.name = folder, "deck"
-        folder.mkdir(parents=True, exist_ok=True)
-        (folder / f"{self.name}.inp").write_text(_Deck(joint, mesh).text(depths), encoding="ascii")
-
-    def run(self) -> None:
-        command, environment = shutil.which("ccx"), {**os.environ, "OMP_NUM_THREADS": "1"}
-        assert command is not None
-        subprocess.run([command, "-i", self.name], cwd=self.folder, env=environment, capture_output=True, check=True)
+def calculix(joint: bs.Joint, mesh: Mesh, depths: numpy.ndarray, folder: Path) -> Job | str:
+    """Write one joint on one mesh, pushed to some indentations in turn; return its run, or why it is skipped."""
+    command = shutil.which("ccx")
+    if command is None:
+        return "no command ccx"
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "deck.inp").write_text(_Deck(joint, mesh).text(depths), encoding="ascii")
+    options: Any = {"cwd": folder, "env": {**os.environ, "OMP_NUM_THREADS": "1"}, "capture_output": True, "check": True}
+    return Job(partial(subprocess.run, [command, "-i", "deck"], **options))
 
 
 class _Deck:

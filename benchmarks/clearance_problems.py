@@ -13,7 +13,7 @@ import runpy
 import sys
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from importlib.util import find_spec
 from math import radians, sin
@@ -91,7 +91,7 @@ class BallProblem:
     title: str
     text: str
     bounce: tools.Bounce
-    numbers: Mapping[str, float]
+    numbers: Mapping[str, float] = field(default_factory=dict)
     columns = ("x_mm", "y_mm", "z_mm")
 
     @cached_property
@@ -151,7 +151,7 @@ class MechanismProblem:
     times: Positions
     columns: tuple[str, ...]
     solve: Callable[[Any], Positions]
-    numbers: Mapping[str, float]
+    numbers: Mapping[str, float] = field(default_factory=dict)
 
     @cached_property
     def reference(self) -> Positions:
@@ -185,7 +185,6 @@ def _pendulum() -> MechanismProblem:
         times=numpy.linspace(0.0, example.SECONDS, 400),
         columns=("x_mm", "y_mm", "angle_rad"),
         solve=lambda load: example.swing(load)[1][:3].T,
-        numbers={},
     )
 
 
@@ -204,7 +203,6 @@ def _four_bar() -> MechanismProblem:
         times=times,
         columns=("crank_rad", "rocker_rad"),
         solve=solve,
-        numbers={},
     )
 
 
@@ -240,11 +238,11 @@ PROBLEMS: Mapping[str, Callable[[], BallProblem | MechanismProblem]] = {
             duration=0.1,
             samples=101,
         ),
-        numbers={},
     ),
 }
 """Problems by the names of their folders."""
 
+HEAD = "| problem | program | error | processor time, s |\n|---|---|---|---|"
 ERROR = (
     "The error of a program is the largest difference of any column from the reference, over the largest change of "
     "that column's magnitude in the reference. The goal is 1e-6."
@@ -275,12 +273,10 @@ def write(folder: Path, names: Any = tuple(PROBLEMS)) -> dict[tuple[str, str], t
                 found = solve()
                 results[name, program] = error_of(found, problem.reference), time.process_time() - start
     rows = [f"| {problem} | {program} | {e:.1e} | {s:.2g} |" for (problem, program), (e, s) in results.items()]
-    text = ["# Spherical joints with clearance", ERROR, "\n".join([*_HEAD, *rows])]
+    text = ["# Spherical joints with clearance", ERROR, "\n".join([HEAD, *rows])]
     (folder / "README.md").write_text("\n\n".join(text) + "\n", encoding="utf-8")
     return results
 
-
-_HEAD = ("| problem | program | error | processor time, s |", "|---|---|---|---|")
 
 if __name__ == "__main__":
     for (problem, program), (e, seconds) in write(Path(sys.argv[1])).items():

@@ -25,10 +25,7 @@ def measure() -> list[Row]:
     tilted = settings.variability
     creeping = replace(tilted, use=replace(tilted.use, creep=logarithmic(), seconds_per_cycle=20.0))
     rows = compare([Pair(f"a cohort of {FEW} patients, wear", _cohort_job(tilted, FEW))], repeats=1)
-    for name, patients, number in (
-        ("wear", tilted, PATIENTS),
-        ("wear and creep", creeping, CREEPING),
-    ):
+    for name, patients, number in (("wear", tilted, PATIENTS), ("wear and creep", creeping, CREEPING)):
         rows += _compared(name, patients, number)
     return rows
 

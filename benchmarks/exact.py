@@ -6,7 +6,6 @@ CalculiX gets the same rigid ball and indentations, on the coarsest meshes that 
 
 from __future__ import annotations
 
-import shutil
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -16,7 +15,7 @@ import numpy
 import ballsocket as bs
 from ballsocket.elasticity.exact.model import chebyshev_curve_of, curve_of
 
-from .calculix_rival import Calculix, Mesh
+from .calculix_rival import Mesh, calculix
 from .report import Pair, Row, compare
 from .timing import Job
 
@@ -49,9 +48,11 @@ def measure() -> list[Row]:
     _press(MODEL, BACKED, force=3000.0)
     rows = compare(
         [
-            Pair("exact, first load on a new joint", Job(lambda: _first(JOINT, force=3000.0))),
+            Pair("exact, first load on a new joint", Job(lambda: _first(MODEL, JOINT, force=3000.0))),
             Pair("exact, each further load", Job(further, len(loads))),
-            Pair("exact-curve, a joint with three layers, first load", Job(_first_backed)),
+            Pair(
+                "exact-curve, a joint with three layers, first load", Job(lambda: _first(curve, BACKED, force=3000.0))
+            ),
             Pair("exact-curve, each of 100 000 loads on it", Job(lambda: _press(curve, BACKED, force=many), len(many))),
         ]
     )
@@ -63,26 +64,19 @@ def _press(model: bs.Model, joint: bs.Joint, **load: Any) -> None:
     _ = contact.max_pressure, contact.half_angle
 
 
-def _first(joint: bs.Joint, **load: Any) -> None:
+def _first(model: bs.Model, joint: bs.Joint, **load: Any) -> None:
     """Press a joint that was never seen."""
     curve_of.cache_clear()
-    _press(MODEL, joint, **load)
-
-
-def _first_backed() -> None:
-    curve_of.cache_clear()
     chebyshev_curve_of.cache_clear()
-    _press(bs.ExactCurve(model=MODEL), BACKED, force=3000.0)
+    _press(model, joint, **load)
 
 
 def _beside_calculix() -> list[Row]:
     pairs = []
     with TemporaryDirectory() as folder:
         for number, (mesh, depths) in enumerate(CASES):
-            theirs: Job | str = "no command ccx"
-            if shutil.which("ccx"):
-                theirs = Job(Calculix(RIGID, mesh, depths, Path(folder) / str(number)).run)
+            theirs = calculix(RIGID, mesh, depths, Path(folder) / str(number))
             work = f"exact, {len(depths)} indentations on a new joint" if len(depths) > 1 else "exact, one indentation"
-            ours = Job(lambda depths=depths: _first(RIGID, indentation=depths))  # type: ignore[misc]
+            ours = Job(lambda depths=depths: _first(MODEL, RIGID, indentation=depths))  # type: ignore[misc]
             pairs.append(Pair(work, ours, f"CalculiX to {mesh.name}", theirs))
         return compare(pairs, repeats=3)

@@ -54,14 +54,6 @@ window.watch = (selector) => {
 """
 
 
-@dataclass
-class Load:
-    """First load of the page: seconds to its inputs, and kB as sent."""
-
-    seconds: float = 0.0
-    sent: float = 0.0
-
-
 @dataclass(frozen=True)
 class Server:
     """Running explorer with its address and its process."""
@@ -81,13 +73,15 @@ class Server:
 
 def measure() -> list[Row]:
     with _opened_browser() as browser, _served_explorer() as server:
-        load, slow = _first_load(browser, server), _first_load(browser, server, SLOW_LINE)
+        visits = [_visit(browser, server.address) for _ in range(VISITS)]
+        seconds, sent = sorted(visits)[VISITS // 2]
+        slow, _ = _visit(browser, server.address, SLOW_LINE)
         number, cpu = _moves(browser, server, NUMBER)
         table, _ = _moves(browser, server, TABLE, final=True)
     return [
-        Row("first load, sent", f"{digits(load.sent)} kB"),
-        Row("first load, to the inputs", f"{digits(load.seconds)} s"),
-        Row("first load, 50 kB/s and 150 ms", f"{digits(slow.seconds)} s"),
+        Row("first load, sent", f"{digits(sent)} kB"),
+        Row("first load, to the inputs", f"{digits(seconds)} s"),
+        Row("first load, 50 kB/s and 150 ms", f"{digits(slow)} s"),
         Row("move of a slider, to the number", number),
         Row("move of a slider, processor time", cpu),
         Row("move of a slider, to the table", table),
@@ -124,34 +118,26 @@ def _new_page(browser: Any) -> Any:
     return browser.new_context(viewport={"width": 1280, "height": 900}).new_page()
 
 
-def _first_load(browser: Any, server: Server, line: dict[str, Any] | None = None) -> Load:
-    """Median of some visits; one by a slow line."""
-    visits = [_visit(browser, server.address, line) for _ in range(1 if line else VISITS)]
-    return sorted(visits, key=lambda load: load.seconds)[len(visits) // 2]
-
-
-def _visit(browser: Any, address: str, line: dict[str, Any] | None) -> Load:
-    page, load = _new_page(browser), Load()
+def _visit(browser: Any, address: str, line: dict[str, Any] | None = None) -> tuple[float, float]:
+    """Load the page for the first time: seconds to its inputs, and kB as sent."""
+    page = _new_page(browser)
+    sent: list[float] = []
     tools = page.context.new_cdp_session(page)
     tools.send("Network.enable")
     if line:
         tools.send("Network.emulateNetworkConditions", line)
 
-    def finished(event: dict[str, Any]) -> None:
-        load.sent += 1e-3 * event["encodedDataLength"]
-
-    def message(event: dict[str, Any]) -> None:
-        load.sent += 1e-3 * len(event["response"]["payloadData"].encode())
-
-    tools.on("Network.loadingFinished", finished)
-    tools.on("Network.webSocketFrameReceived", message)
+    tools.on("Network.loadingFinished", lambda event: sent.append(event["encodedDataLength"]))
+    tools.on(
+        "Network.webSocketFrameReceived", lambda event: sent.append(len(event["response"]["payloadData"].encode()))
+    )
     start = time.perf_counter()
     page.goto(address, wait_until="commit", timeout=1e3 * PATIENCE)
     page.locator(READY).first.wait_for(timeout=1e3 * PATIENCE)
-    load.seconds = time.perf_counter() - start
+    seconds = time.perf_counter() - start
     page.wait_for_timeout(0 if line else 2000)  # for bytes that come after the inputs
     page.context.close()
-    return load
+    return seconds, 1e-3 * sum(sent)
 
 
 def _moves(browser: Any, server: Server, text: str, final: bool = False) -> tuple[str, str]:

@@ -16,10 +16,11 @@ from typing import Any
 import numpy
 
 import ballsocket as bs
-from ballsocket.elasticity.finite_elements import bodies, calculix, solver
+from ballsocket.elasticity.finite_elements import bodies, solver
+from ballsocket.elasticity.finite_elements.calculix import run
 from ballsocket.elasticity.finite_elements.deck import deck_of
 
-from .calculix_rival import Calculix
+from .calculix_rival import calculix
 from .exact import COARSE, RIGID
 from .report import Pair, Row, compare
 from .timing import Job, wall_time
@@ -38,9 +39,7 @@ STEPS = 20
 def measure() -> list[Row]:
     depths = numpy.linspace(0.01, 0.045, STEPS)
     with TemporaryDirectory() as folder:
-        theirs: Job | str = "no command ccx"
-        if shutil.which("ccx"):
-            theirs = Job(Calculix(RIGID, COARSE, depths, Path(folder)).run)
+        theirs = calculix(RIGID, COARSE, depths, Path(folder))
         ours = Job(lambda: _first(ADAPTED, RIGID, indentation=depths))
         rows = compare(
             [
@@ -69,6 +68,6 @@ def _on_the_papers_mesh() -> list[Row]:
         theirs: Job | str = "no command ccx" if shutil.which("ccx") is None else "BALLSOCKET_PAPERS_MESH is not set"
         if shutil.which("ccx") and os.environ.get("BALLSOCKET_PAPERS_MESH"):
             deck.write(Path(folder))
-            theirs = Job(partial(calculix.run, Path(folder), threads=2))
+            theirs = Job(partial(run, Path(folder), threads=2))
         work = f"the paper's mesh, 71 440 elements, {STEPS} steps, by the clock"
         return compare([Pair(work, ours, "CalculiX", theirs)], repeats=1, clock=wall_time)

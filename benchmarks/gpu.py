@@ -19,7 +19,7 @@ from .timing import MissingError, wall_time
 from .wear import patients_jobs
 
 COUNT, ARRAYS = 10_000_000, 7  # R1, c, L, F in; d, ε, p0 out
-LOADS, PATIENTS = (512,), (8192,)
+LOADS, PATIENTS = 512, 8192
 
 
 def measure() -> list[Row]:
@@ -39,14 +39,12 @@ def rows_of(device: Any, count: int = COUNT) -> list[Row]:
     with jax.default_device(device):
         with jax.enable_x64(True):
             rows = compare(_presses(count), clock=wall_time)
-        for number in LOADS:
-            pairs = [Pair(f"tilted load in a real cup to 1e-4, {number} at once", sphere.jax_job(number))]
-            pairs.append(Pair(f"tilted load in a real cup to 2e-5, {number} at once", sphere.jax_job(number, 2e-5)))
-            rows += compare(pairs, clock=wall_time)
-        for number in PATIENTS:
-            ours, one = patients_jobs(number)
-            work = f"springs of a patient, a cycle of 32 instants, {number} at once"
-            rows += compare([Pair(work, ours, "numba on one core", one)], repeats=2, clock=wall_time)
+        for text, tolerance in (("1e-4", 1e-4), ("2e-5", 2e-5)):
+            cup = Pair(f"tilted load in a real cup to {text}, {LOADS} at once", sphere.jax_job(LOADS, tolerance))
+            rows += compare([cup], clock=wall_time)
+        ours, one = patients_jobs(PATIENTS)
+        work = f"springs of a patient, a cycle of 32 instants, {PATIENTS} at once"
+        rows += compare([Pair(work, ours, "numba on one core", one)], repeats=2, clock=wall_time)
     where = f"{device.device_kind}, {date.today().isoformat()}"
     return [replace(row, machine=where) for row in rows]
 

@@ -21,7 +21,7 @@ from ballsocket.export.fmu import Fmu
 from ballsocket.models.modulus import bonded_layer
 
 from . import tools
-from .opensim_model import build, force_job
+from .opensim_model import build, exported, force_job
 from .report import Pair, Row, compare, if_installed
 from .timing import Job, MissingError
 
@@ -60,26 +60,25 @@ def measure() -> list[Row]:
             raise MissingError(str(missing)) from missing
         modulus = float(bs.hess_forsbach(JOINT))
         foundation = partial(force_job, JOINT, modulus, 1000, DEPTH)
-        hosts: tuple[tuple[str, str, Callable[[], Job], str, Callable[[], Job]], ...] = (
-            ("opensim", "a force", lambda: _expression(folder), "its elastic foundation, 924 faces", foundation),
-            ("mujoco", "a step", lambda: _bounce(tools.mujoco, folder), "its own contact", lambda: Job(_plane, STEPS)),
-            (
-                "exudyn",
-                "a step",
-                lambda: _bounce(tools.exudyn, folder),
-                "its own hollow sphere",
-                lambda: _bounce(tools.exudyn_hollow_sphere, folder),
-            ),
+        hollow = partial(_bounce, tools.exudyn_hollow_sphere, folder)
+        hosts: tuple[tuple[str, str, Callable[[Path], Job], str, Callable[[], Job]], ...] = (
+            ("opensim", "a force", _force, "its elastic foundation, 924 faces", foundation),
+            ("mujoco", "a step", partial(_bounce, tools.mujoco), "its own contact", lambda: Job(_plane, STEPS)),
+            ("exudyn", "a step", partial(_bounce, tools.exudyn), "its own hollow sphere", hollow),
         )
         rows = []
         for package, what, ours, rival, theirs in hosts:
-            work, job = f"{package}, {what} by the exported joint", if_installed(package, ours)
+            work, job = f"{package}, {what} by the exported joint", if_installed(package, partial(ours, folder))
             if isinstance(job, str):
                 rows.append(Row(work, f"skipped: {job}", rival, skipped=True))
             else:
                 pairs.append(Pair(work, job, rival, theirs()))
         rows += compare(pairs)
     return [*rows, *_towards_half()]
+
+
+def _force(folder: Path) -> Job:
+    return exported(folder / f"{tools.NAME}.osim", float(JOINT.clearance)).job(DEPTH, CALLS)
 
 
 def _bounce(program: Callable[[tools.Bounce, Path], object], folder: Path) -> Job:
@@ -95,37 +94,6 @@ def _fmu(folder: Path) -> Job:
     run = ctypes.CDLL(str(path)).run
     run.restype = ctypes.c_double
     return Job(lambda: run(CALLS), CALLS)
-
-
-def _expression(folder: Path) -> Job:
-    force = _opensim_force(folder)
-
-    def call() -> None:
-        for number in range(CALLS):
-            force(DEPTH * (1 + 1e-6 * (number % 2)))
-
-    return Job(call, CALLS)
-
-
-def _opensim_force(folder: Path) -> Callable[[float], float]:
-    """The force in N at an indentation in mm, of the exported file."""
-    import opensim
-
-    opensim.Logger.setLevelString("Error")
-    opensim.Logger.removeFileSink()
-    model = opensim.Model(str(folder / f"{tools.NAME}.osim"))
-    model.setGravity(opensim.Vec3(0))
-    state = model.initSystem()
-    along = model.getCoordinateSet().get("x")
-    ball = model.getBodySet().get("ball").getMobilizedBodyIndex()
-
-    def force(depth: float) -> float:
-        along.setValue(state, 1e-3 * (float(JOINT.clearance) + depth), False)
-        model.realizeDynamics(state)
-        return -float(model.getRigidBodyForces(state).get(ball).get(1).get(0))
-
-    force.model = model  # type: ignore[attr-defined] # it must not be freed while its state is in use
-    return force
 
 
 def _plane() -> None:
@@ -152,7 +120,7 @@ def _towards_half() -> list[Row]:
         with TemporaryDirectory() as made:
             job = ExportJob(element=bs.ForceElement(bs.Exact(), joint), name=tools.NAME, depth=1.25 * DEPTH)
             TARGETS["opensim"].write(job, Path(made))
-            ours = _opensim_force(Path(made))(DEPTH)
+            ours = exported(Path(made) / f"{tools.NAME}.osim", float(JOINT.clearance)).force(DEPTH)
         pair = build(float(joint.ball_radius), float(joint.clearance), float(bonded_layer(joint)), 1000)
         theirs = pair.force(DEPTH)
         rows.append(Row(work, f"{100 * abs(ours / exact - 1):.2f} %", f"{rival}: {100 * (theirs / exact - 1):+.0f} %"))

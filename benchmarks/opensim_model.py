@@ -23,7 +23,7 @@ METRES, STIFFNESS = 1e-3, 1e9  # per millimetre; Pa/m per MPa/mm
 class BallInSocket:
     """A socket fixed to the ground and a ball that slides along x, without gravity, friction or dissipation."""
 
-    model: Any
+    model: Any  # kept: it must not be freed while its state is in use
     state: Any
     coordinate: Any
     ball: int  # index of the ball's forces
@@ -35,16 +35,13 @@ class BallInSocket:
         self.model.realizeDynamics(self.state)
         return -float(self.model.getRigidBodyForces(self.state).get(self.ball).get(1).get(0))
 
+    def job(self, depth: float, calls: int) -> Job:
+        """Force evaluations at two alternating positions, as in the steps of a simulation."""
+        return Job(lambda: [self.force(depth * (1 + 1e-6 * (number % 2))) for number in range(calls)], calls)
+
 
 def force_job(joint: bs.Joint, modulus: float, faces: int, depth: float, calls: int = 100) -> Job:
-    """Force evaluations at two alternating positions, as in the steps of a simulation."""
-    pair = build(float(joint.ball_radius), float(joint.clearance), modulus, faces)
-
-    def call() -> None:
-        for number in range(calls):
-            pair.force(depth * (1 + 1e-6 * (number % 2)))
-
-    return Job(call, calls)
+    return build(float(joint.ball_radius), float(joint.clearance), modulus, faces).job(depth, calls)
 
 
 def socket_mesh(radius: float, faces: int) -> tuple[numpy.ndarray, numpy.ndarray]:
@@ -93,10 +90,7 @@ def _centroids_near_sphere(vertices: numpy.ndarray, faces: numpy.ndarray, radius
 
 def build(ball_radius: float, clearance: float, foundation_modulus: float, faces: int) -> BallInSocket:
     """The model, with about `faces` faces in the socket's mesh."""
-    import opensim
-
-    opensim.Logger.setLevelString("Error")
-    opensim.Logger.removeFileSink()  # no opensim.log in the working directory
+    opensim = _quiet()
     vertices, triangles = socket_mesh((ball_radius + clearance) * METRES, faces)
     model, zero = opensim.Model(), opensim.Vec3(0)
     model.setGravity(zero)
@@ -117,5 +111,20 @@ def build(ball_radius: float, clearance: float, foundation_modulus: float, faces
         model.addContactGeometry(opensim.ContactSphere(ball_radius * METRES, zero, ball, "sphere"))
         model.addForce(contact)
         state = model.initSystem()  # reads the mesh: the folder must still exist
-    coordinate, index = joint.getCoordinate(), ball.getMobilizedBodyIndex()
-    return BallInSocket(model, state, coordinate, index, clearance)
+    return BallInSocket(model, state, joint.getCoordinate(), ball.getMobilizedBodyIndex(), clearance)
+
+
+def exported(path: Path, clearance: float) -> BallInSocket:
+    """The model of a file of ours, with its expression for the force."""
+    model = _quiet().Model(str(path))
+    model.setGravity(_quiet().Vec3(0))
+    ball, along = model.getBodySet().get("ball"), model.getCoordinateSet().get("x")
+    return BallInSocket(model, model.initSystem(), along, ball.getMobilizedBodyIndex(), clearance)
+
+
+def _quiet() -> Any:
+    import opensim
+
+    opensim.Logger.setLevelString("Error")
+    opensim.Logger.removeFileSink()  # no opensim.log in the working directory
+    return opensim

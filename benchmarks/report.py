@@ -84,10 +84,9 @@ def if_installed(package: str, make: Callable[[], Job]) -> Job | str:
 
 def duration(seconds: float) -> str:
     """Three digits of a time in a suitable unit."""
-    for unit, name in ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns")):
-        if seconds >= 0.9995 * unit or name == "ns":
-            return f"{digits(seconds / unit)} {name}"
-    raise AssertionError(seconds)
+    units = ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns"))
+    unit, name = next((unit for unit in units if seconds >= 0.9995 * unit[0]), units[-1])
+    return f"{digits(seconds / unit)} {name}"
 
 
 def ratio_text(ratio: Spread) -> str:

@@ -34,23 +34,18 @@ _fresh = count(1)
 def measure() -> list[Row]:
     model, springs = bs.Sphere(), bs.Sphere(surface=bs.Springs())
     displaced = Job(lambda: model.press(JOINT, indentation=INDENTATION, tilt=TILT))
+    forced = Job(lambda: [model.press(JOINT, force=3000.0, tilt=TILT) for _ in range(9)], 9)
+    jax = if_installed("jax", partial(jax_job, 64))
     with TemporaryDirectory() as folder:
         pairs = [
             Pair("tilted cup, a new liner thickness and its first press", _set_up(model)),
             Pair("tilted cup, a new clearance in a known bore and its first press", _new_clearance(model)),
             Pair("tilted cup, a displacement", displaced, "CalculiX, 2954 nodes", _calculix(folder, 11.25)),
             Pair("tilted cup, a displacement", displaced, "CalculiX, 4570 nodes", _calculix(folder, 9.0)),
-            Pair(
-                "tilted cup, a force", Job(lambda: [model.press(JOINT, force=3000.0, tilt=TILT) for _ in range(9)], 9)
-            ),
+            Pair("tilted cup, a force", forced),
             Pair(f"tilted cup, each of a cycle of {CYCLE} loads", _cycle(model), "springs", _cycle(springs)),
             Pair("tilted cup, each of 64 loads at once", _batch(64), "one at a time", _batch(1)),
-            Pair(
-                "tilted cup, each of 64 loads at once",
-                _batch(64),
-                "JAX, float32",
-                if_installed("jax", partial(jax_job, 64)),
-            ),
+            Pair("tilted cup, each of 64 loads at once", _batch(64), "JAX, float32", jax),
         ]
         return compare(pairs, repeats=2)
 

@@ -20,15 +20,11 @@ NUMPY = "import numpy"
 
 
 def measure() -> list[Row]:
-    imported = _process("-c", "import ballsocket")
-    helped = _process("-m", "ballsocket", "--help")
-    pressed = _process("-m", "ballsocket", "press", "examples/hip.toml")
     numpy = _process("-c", NUMPY)
-    pairs = (
-        Pair("import ballsocket", imported, NUMPY, numpy),
-        Pair("ballsocket --help", helped, NUMPY, numpy),
-        Pair("ballsocket press examples/hip.toml", pressed, NUMPY, numpy),
-    )
+    starts = {"import ballsocket": _process("-c", "import ballsocket")}
+    for words in ("--help", "press examples/hip.toml"):
+        starts[f"ballsocket {words}"] = _process("-m", "ballsocket", *words.split())
+    pairs = [Pair(work, job, NUMPY, numpy) for work, job in starts.items()]
     with tempfile.TemporaryDirectory() as folder:
         paper = [
             Pair(f"ballsocket {words}", _process("-m", "ballsocket", *words.split(), "--out", f"{folder}/{len(words)}"))

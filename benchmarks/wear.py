@@ -16,13 +16,7 @@ import numpy
 import ballsocket as bs
 from ballsocket.hip import Archard, HipSimulation, iso_14242_1, socket_foundation
 from ballsocket.hip.socket_foundation import NO_LATERAL_SPRING
-from ballsocket.hip.spring_equilibrium import (
-    SpringContact,
-    join_contacts,
-    solve_in_blocks,
-    solve_patients,
-    spring_solver,
-)
+from ballsocket.hip.spring_equilibrium import join_contacts, solve_in_blocks, solve_patients, spring_solver
 
 from .report import Pair, Row, compare
 from .timing import Job
@@ -109,7 +103,7 @@ def patients_jobs(number: int) -> tuple[Job, Job]:
     springs: Any = use.foundation
     worn, factors = numpy.zeros(len(springs.areas)), numpy.linspace(0.6, 1.4, number)
     loads = use.frame.loads
-    contacts: list[SpringContact] = [springs.contact(factor * loads, worn, NO_LATERAL_SPRING) for factor in factors]
+    contacts = [springs.contact(factor * loads, worn, NO_LATERAL_SPRING) for factor in factors]
     start = numpy.ascontiguousarray(numpy.broadcast_to(use.unworn.displacement, (number, *use.frame.loads.shape)))
     solver, pressure = spring_solver(), numpy.empty((len(use.frame.loads), len(springs.areas)))
     with jax.enable_x64(True):
