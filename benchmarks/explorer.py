@@ -56,10 +56,11 @@ window.watch = (selector) => {
 
 @dataclass
 class Load:
-    """First load of the page: seconds to its inputs, and kB as sent."""
+    """First load of the page: seconds to its inputs, kB as sent, and number of requests with that of the socket."""
 
     seconds: float = 0.0
     sent: float = 0.0
+    requests: int = 0
 
 
 @dataclass(frozen=True)
@@ -82,14 +83,16 @@ class Server:
 def measure() -> list[Row]:
     with _opened_browser() as browser, _served_explorer() as server:
         load, slow = _first_load(browser, server), _first_load(browser, server, SLOW_LINE)
-        number, cpu = _moves(browser, server, NUMBER)
-        table, _ = _moves(browser, server, TABLE, final=True)
+        number, cpu, sent = _moves(browser, server, NUMBER)
+        table, *_ = _moves(browser, server, TABLE, final=True)
     return [
         Row("first load, sent", f"{digits(load.sent)} kB"),
+        Row("first load, requests", str(load.requests)),
         Row("first load, to the inputs", f"{digits(load.seconds)} s"),
         Row("first load, 50 kB/s and 150 ms", f"{digits(slow.seconds)} s"),
         Row("move of a slider, to the number", number),
         Row("move of a slider, processor time", cpu),
+        Row("move of a slider, sent before compression", sent),
         Row("move of a slider, to the table", table),
     ]
 
@@ -139,12 +142,17 @@ def _visit(browser: Any, address: str, line: dict[str, Any] | None) -> Load:
 
     def finished(event: dict[str, Any]) -> None:
         load.sent += 1e-3 * event["encodedDataLength"]
+        load.requests += 1
 
     def message(event: dict[str, Any]) -> None:
         load.sent += 1e-3 * len(event["response"]["payloadData"].encode())
 
+    def opened(event: dict[str, Any]) -> None:
+        load.requests += 1
+
     tools.on("Network.loadingFinished", finished)
     tools.on("Network.webSocketFrameReceived", message)
+    tools.on("Network.webSocketCreated", opened)
     start = time.perf_counter()
     page.goto(address, wait_until="commit", timeout=1e3 * PATIENCE)
     page.locator(READY).first.wait_for(timeout=1e3 * PATIENCE)
@@ -154,14 +162,16 @@ def _visit(browser: Any, address: str, line: dict[str, Any] | None) -> Load:
     return load
 
 
-def _moves(browser: Any, server: Server, text: str, final: bool = False) -> tuple[str, str]:
-    """Move the slider by keys, to and fro: ms to the first or the final change of a text, and of the processor."""
-    page = _new_page(browser)
+def _moves(browser: Any, server: Server, text: str, final: bool = False) -> tuple[str, str, str]:
+    """Move the slider by keys, to and fro: ms to the first or the final change of a text, ms of the processor, kB."""
+    page, sent = _new_page(browser), list[int]()
     page.add_init_script(WATCH)
+    page.on("websocket", lambda line: line.on("framereceived", lambda frame: sent.append(len(frame))))
     page.goto(server.address)
     page.locator(text).first.wait_for()
     page.wait_for_timeout(1500)
     page.locator(SLIDER).first.focus()
+    sent.clear()
     before, found = server.processor_time(), []
     for number in range(MOVES):
         page.evaluate("(selector) => window.watch(selector)", text)
@@ -171,4 +181,5 @@ def _moves(browser: Any, server: Server, text: str, final: bool = False) -> tupl
     taken = 1e3 * (server.processor_time() - before) / MOVES
     page.context.close()
     late = quantiles(found, n=100, method="inclusive")[94]
-    return f"{digits(median(found))} ms ({digits(late)})", f"{digits(taken)} ms"
+    moved = f"{digits(median(found))} ms ({digits(late)})"
+    return moved, f"{digits(taken)} ms", f"{digits(1e-3 * sum(sent) / MOVES)} kB"

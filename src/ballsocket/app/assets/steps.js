@@ -1,5 +1,5 @@
 // @ts-check
-// History: the last steps of the undo with what each changed, and what that did to the largest pressure and the verdict.
+// History: the last steps of the undo with what each changed, and its effect on the largest pressure and the verdict.
 import { listen } from "./connection.js";
 import { element } from "./elements.js";
 import { isVisit, latest, step } from "./history.js";
