@@ -74,16 +74,18 @@ class Server:
 def measure() -> list[Row]:
     with _opened_browser() as browser, _served_explorer() as server:
         visits = [_visit(browser, server.address) for _ in range(VISITS)]
-        seconds, sent = sorted(visits)[VISITS // 2]
-        slow, _ = _visit(browser, server.address, SLOW_LINE)
-        number, cpu = _moves(browser, server, NUMBER)
-        table, _ = _moves(browser, server, TABLE, final=True)
+        seconds, sent, requests = sorted(visits)[VISITS // 2]
+        slow, *_ = _visit(browser, server.address, SLOW_LINE)
+        number, cpu, moved = _moves(browser, server, NUMBER)
+        table, *_ = _moves(browser, server, TABLE, final=True)
     return [
         Row("first load, sent", f"{digits(sent)} kB"),
+        Row("first load, requests", str(requests)),
         Row("first load, to the inputs", f"{digits(seconds)} s"),
         Row("first load, 50 kB/s and 150 ms", f"{digits(slow)} s"),
         Row("move of a slider, to the number", number),
         Row("move of a slider, processor time", cpu),
+        Row("move of a slider, sent before compression", moved),
         Row("move of a slider, to the table", table),
     ]
 
@@ -118,10 +120,11 @@ def _new_page(browser: Any) -> Any:
     return browser.new_context(viewport={"width": 1280, "height": 900}).new_page()
 
 
-def _visit(browser: Any, address: str, line: dict[str, Any] | None = None) -> tuple[float, float]:
-    """Load the page for the first time: seconds to its inputs, and kB as sent."""
+def _visit(browser: Any, address: str, line: dict[str, Any] | None = None) -> tuple[float, float, int]:
+    """Load the page for the first time: seconds to its inputs, kB as sent, and number of requests."""
     page = _new_page(browser)
     sent: list[float] = []
+    requests: list[Any] = []
     tools = page.context.new_cdp_session(page)
     tools.send("Network.enable")
     if line:
@@ -131,23 +134,27 @@ def _visit(browser: Any, address: str, line: dict[str, Any] | None = None) -> tu
     tools.on(
         "Network.webSocketFrameReceived", lambda event: sent.append(len(event["response"]["payloadData"].encode()))
     )
+    for kind in ("request", "websocket"):
+        page.on(kind, requests.append)
     start = time.perf_counter()
     page.goto(address, wait_until="commit", timeout=1e3 * PATIENCE)
     page.locator(READY).first.wait_for(timeout=1e3 * PATIENCE)
     seconds = time.perf_counter() - start
     page.wait_for_timeout(0 if line else 2000)  # for bytes that come after the inputs
     page.context.close()
-    return seconds, 1e-3 * sum(sent)
+    return seconds, 1e-3 * sum(sent), len(requests)
 
 
-def _moves(browser: Any, server: Server, text: str, final: bool = False) -> tuple[str, str]:
-    """Move the slider by keys, to and fro: ms to the first or the final change of a text, and of the processor."""
-    page = _new_page(browser)
+def _moves(browser: Any, server: Server, text: str, final: bool = False) -> tuple[str, str, str]:
+    """Move the slider by keys, to and fro: ms to the first or the final change of a text, ms of the processor, kB."""
+    page, sent = _new_page(browser), list[int]()
     page.add_init_script(WATCH)
+    page.on("websocket", lambda line: line.on("framereceived", lambda frame: sent.append(len(frame))))
     page.goto(server.address)
     page.locator(text).first.wait_for()
     page.wait_for_timeout(1500)
     page.locator(SLIDER).first.focus()
+    sent.clear()
     before, found = server.processor_time(), []
     for number in range(MOVES):
         page.evaluate("(selector) => window.watch(selector)", text)
@@ -157,4 +164,5 @@ def _moves(browser: Any, server: Server, text: str, final: bool = False) -> tupl
     taken = 1e3 * (server.processor_time() - before) / MOVES
     page.context.close()
     late = quantiles(found, n=100, method="inclusive")[94]
-    return f"{digits(median(found))} ms ({digits(late)})", f"{digits(taken)} ms"
+    moved = f"{digits(median(found))} ms ({digits(late)})"
+    return moved, f"{digits(taken)} ms", f"{digits(1e-3 * sum(sent) / MOVES)} kB"

@@ -463,3 +463,47 @@ def test_rows_of_limits_are_added_refused_and_taken_away(user):
     row.locator("button").click()
     user.until("!location.search.includes('limit=')")
     assert row.count() == 0
+
+
+def test_a_chart_is_zoomed_and_its_points_are_copied(reader):
+    page = reader.open("?preset=hip-28&load.force=3000").page
+    chart = page.locator("#press-charts figure").first
+
+    def ends():
+        ticks = chart.locator("svg[data-chart] > text.tick[text-anchor=middle]").all_text_contents()
+        return float(ticks[0]), float(ticks[-1])
+
+    chart.wait_for()
+    whole = ends()
+    chart.locator("button", has_text="Zoom").click()
+    low, high = ends()
+    assert whole[0] < low < high < whole[1]
+    reader.nudge("load")
+    reader.answered()
+    assert ends() == (low, high)  # it outlives an answer
+    reader.drags("#press-charts figure:first-of-type svg[data-chart]", (40, 0))
+    assert low <= ends()[0] < ends()[1] < high
+    chart.locator("button", has_text="All").click()
+    assert ends() == whole
+    chart.locator("button", has_text="CSV").click()
+    reader.says("copied")
+    head, first, *_ = page.evaluate("navigator.clipboard.readText()").splitlines()
+    assert head == '"curve","polar angle φ [°]","contact pressure p [MPa]"'
+    name, angle, largest = first.split(",")
+    assert (name, float(angle)) == ('"exact"', 0.0)
+    assert float(largest) == pytest.approx(reader.number("max_pressure"), rel=1e-3)
+
+
+def test_an_explanation_is_sent_when_it_is_opened_and_keeps_the_focus(reader):
+    page = reader.open("?preset=hip-28&load.force=3000").page
+    summary = page.locator("[data-why=area] > summary")
+    assert page.locator("[data-why=area] p").text_content() == ""
+    summary.press("Enter")
+    expect(page.locator("[data-why=area] p")).to_contain_text("R1 = 14 mm")
+    expect(summary).to_be_focused()
+    reader.nudge("load")
+    reader.answered()
+    expect(page.locator("[data-why=area] p")).to_be_visible()
+    summary.press("Enter")
+    reader.answered()
+    expect(page.locator("[data-why=area][open]")).to_have_count(0)

@@ -28,10 +28,14 @@ def read_request(text: str | bytes) -> dict[str, Any] | None:
 def difference(old: Any, new: Any) -> Any:
     """Return the changes from one plain value to another: `[new]`, or changes by key or index where both have the same.
 
+    A list or dict of which more than half is new is replaced.
+
     Examples
     --------
     >>> difference({"unit": "N", "points": [0.0, 1.25, 2.5]}, {"unit": "N", "points": [0.0, 1.5, 2.5]})
     {'points': {1: [1.5]}}
+    >>> difference([0, 1, 2], [5, 6, 2])
+    [[5, 6, 2]]
     """
     if isinstance(old, dict) and isinstance(new, dict) and old.keys() == new.keys():
         keys: Iterable[Any] = new
@@ -40,7 +44,8 @@ def difference(old: Any, new: Any) -> Any:
     else:
         return [new]
     inside = {key: difference(old[key], new[key]) for key in keys if old[key] != new[key]}
-    return min([new], inside, key=lambda change: len(json.dumps(change)))
+    is_new = 2 * len(inside) > len(new) and all(isinstance(change, list) for change in inside.values())
+    return [new] if is_new else inside
 
 
 class Channel:

@@ -37,7 +37,7 @@ _FACTORS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 _MAX_GAP = 0.09  # largest drawn gap beside the ball, relative to the socket radius
 _PETALS = 48
 _HIGHEST = 0.45  # of the liner, or of the radius
-_ANGLES = numpy.sin(numpy.linspace(0.0, pi / 2, 28))
+_ANGLES = numpy.sin(numpy.linspace(0.0, pi / 2, 24))
 _QUAD = "M{:.1f},{:.1f}L{:.1f},{:.1f}L{:.1f},{:.1f}L{:.1f},{:.1f}Z".format
 
 _PAPER_COLOURS = {

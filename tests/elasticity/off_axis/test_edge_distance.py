@@ -121,4 +121,4 @@ def test_explorer_writes_known_digits_of_the_edge_margin_or_no_contact():
         ({"force": 0.0}, r"\? No contact: the ball is not loaded"),
         ({"force": 1000.0, "direction": (0.0, 0.0, -1.0)}, "✗ No contact: dislocated"),
     ):
-        assert re.search(words, _verdict(model.press(HIP, **load), Reading()))
+        assert re.search(words, _verdict(model.press(HIP, **load), Reading())["text"])

@@ -41,21 +41,24 @@ function checks({ rows }) {
       cell("td", capacity), measure, cell("td", [result, "", "result"]), cell("td", [source, "", "source"]));
   });
   const top = element("tr", {}, ...heads.map((head) => element("th", { scope: "col" }, head)));
-  return element("div", { class: "checks", role: "region", "aria-label": "checks" }, element("table", {}, top, ...lines));
+  const region = { class: "checks", role: "region", "aria-label": "checks" };
+  return element("div", region, element("table", {}, top, ...lines));
 }
 /** A row of cells, or one with a style, a line before its head and cells, of which the last reaches the end. */
 function tableRow(row, count) {
   if (Array.isArray(row)) return element("tr", {}, ...row.map((content) => cell("td", content)));
   const { style, line, cells } = row;
   const node = element("tr", { class: style }, ...cells.map((content, index) => {
-    const isHead = index === 0 && cells.length > 1, isShort = index === cells.length - 1 && cells.length < count;
-    return cell(isHead ? "th" : "td", content, { ...(isHead && { scope: "row" }), ...(isShort && { colspan: count - index }) });
+    const span = index === cells.length - 1 && cells.length < count ? { colspan: count - index } : {};
+    if (index === 0 && cells.length > 1) return cell("th", content, { scope: "row" });
+    return cell("td", content, span);
   }));
   if (line) node.firstChild.prepend(swatch(line));
   return node;
 }
 function table({ heads, rows, style }) {
-  const top = element("tr", {}, ...heads.map((head) => (head ? cell("th", head, { scope: "col" }) : element("td"))));
+  const headOf = (head) => (head ? cell("th", head, { scope: "col" }) : element("td"));
+  const top = element("tr", {}, ...heads.map(headOf));
   const lines = rows.map((row) => tableRow(row, heads.length));
   const region = { class: `wide ${style}`, tabindex: "0", role: "region", "aria-label": style || "table" };
   return element("div", region, element("table", {}, top, ...lines));

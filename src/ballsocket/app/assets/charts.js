@@ -15,7 +15,10 @@ const drawn = new WeakMap(); // by the picture
 /** @type {Map<string, number[]>} */
 const windows = new Map(); // ends of x that were chosen, by the labels of the axes: they outlive an answer
 
-/** Return the multiples of a round step between two ends. @type {(start: number, end: number, most: number) => number[]} */
+/**
+ * Return the multiples of a round step between two ends.
+ * @type {(start: number, end: number, most: number) => number[]}
+ */
 function ticks(start, end, most) {
   const wide = end - start, scale = 10 ** Math.floor(Math.log10(wide / most));
   const step = scale * [1, 2, 2.5, 5, 10].find((factor) => factor * scale * most >= wide * (1 - 1e-9));
@@ -37,14 +40,16 @@ function endsOf(chart) {
   const inside = !x ? [] : chart.curves.flatMap((curve) =>
     curve.y.filter((value, index) => value !== null && curve.x[index] >= x[0] && curve.x[index] <= x[1]));
   const low = Math.min(...inside), high = Math.max(...inside), margin = 0.06 * (high - low || Math.abs(high));
-  return inside.length ? { x, y: [low - margin, high + margin] } : { x: [chart.start, chart.ends[0]], y: [0, chart.ends[1]] };
+  if (inside.length) return { x, y: [low - margin, high + margin] };
+  return { x: [chart.start, chart.ends[0]], y: [0, chart.ends[1]] };
 }
 /** @param {Chart} chart */
 function draw(chart) {
   const { label, size: [wide, high], flagged, curves } = chart, ends = endsOf(chart);
   const right = wide - RIGHT, foot = high - FOOT, middle = (TOP + foot) / 2;
   /** @type {(value: number | null, ends: number[], from: number, to: number) => number} */
-  const place = (value, [low, top], from, to) => (value === null ? NaN : from + ((to - from) * (value - low)) / (top - low));
+  const place = (value, [low, top], from, to) =>
+    (value === null ? NaN : from + ((to - from) * (value - low)) / (top - low));
   const across = (value) => place(value, ends.x, LEFT, right), up = (value) => place(value, ends.y, foot, TOP);
   const svg = part("svg", { class: "picture", viewBox: `0 0 ${wide} ${high}`, role: "img", "aria-label": label });
   svg.dataset.chart = "";
@@ -84,7 +89,8 @@ function draw(chart) {
     for (const [d, width] of [[thick, THICK], [thin, THIN]])
       if (d) area.append(part("path", { d, "stroke-width": width, ...stroke }));
     if (curve.mark)
-      area.append(part("circle", { cx: across(curve.mark[0]), cy: up(curve.mark[1]), r: 4, fill: colour, class: kind }));
+      area.append(part("circle",
+        { cx: across(curve.mark[0]), cy: up(curve.mark[1]), r: 4, fill: colour, class: kind }));
   }
   svg.append(area);
   return svg;
@@ -100,9 +106,10 @@ export function charts({ charts: all, legend }) {
 /** @param {Chart} chart */
 function figure(chart) {
   const [words, red] = chart.caption, key = `${chart.x} ${chart.y}`;
-  if (!chart.curves.length) return element("figure", { class: "quiet" }, element("figcaption", {}, words ?? ""), draw(chart));
-  const caption = words || red ? [element("figcaption", {}, words, ...(red ? [element("b", { class: "no" }, red)] : []))] : [];
-  const node = element("figure", { class: "chart" }, ...caption, draw(chart));
+  const caption = element("figcaption", {}, words ?? "");
+  if (!chart.curves.length) return element("figure", { class: "quiet" }, caption, draw(chart));
+  if (red) caption.append(element("b", { class: "no" }, red));
+  const node = element("figure", { class: "chart" }, ...(words || red ? [caption] : []), draw(chart));
   const button = (text, label) => element("button", { type: "button", class: "plain", "aria-label": label }, text);
   const zoom = button("Zoom", `Zoom into ${chart.y}`), all = button("All", `Show all of ${chart.y}`);
   const copy = button("CSV", `Copy ${chart.y} as CSV`);
@@ -125,13 +132,16 @@ function figure(chart) {
   node.append(element("div", { class: "chart-tools" }, zoom, all, copy));
   return node;
 }
-/** Return all points as a table, a row each; text that a spreadsheet would take for a formula is marked. @param {Chart} chart */
+/** Return all points as CSV; text that a spreadsheet would take for a formula is marked. @param {Chart} chart */
 function csvOf({ x, y, curves }) {
   const quoted = (text) => `"${text.replace(/^[=+\-@]/, "'$&").replaceAll('"', '""')}"`;
   const rows = curves.flatMap(({ name, x, y }) => x.map((value, index) => [quoted(name), value, y[index]].join(",")));
   return [["curve", x, y].map(quoted).join(","), ...rows, ""].join("\n");
 }
-/** Return the picture coordinates of a point of a chart. @param {Element} svg  @param {number | null} x  @param {number | null} y */
+/**
+ * Return the picture coordinates of a point of a chart.
+ * @param {Element} svg  @param {number | null} x  @param {number | null} y
+ */
 export function placeIn(svg, x, y) {
   const { across, up } = drawn.get(svg);
   return { x: across(x), y: up(y), top: TOP, foot: up(drawn.get(svg).y[0]) };
@@ -154,8 +164,8 @@ function over(event) {
   if (!data) return;
   const place = pointIn(svg, event), tip = part("g", { class: "tip" }), found = held ? null : nearest(data, place);
   if (held) {
-    const size = { x: Math.min(held.x, place.x), width: Math.abs(place.x - held.x), y: TOP, height: data.up(data.y[0]) - TOP };
-    tip.append(part("rect", { class: "chosen", ...size }));
+    const x = Math.min(held.x, place.x), width = Math.abs(place.x - held.x);
+    tip.append(part("rect", { class: "chosen", x, width, y: TOP, height: data.up(data.y[0]) - TOP }));
   } else if (found) {
     const end = found.x > 240, [x, y] = found.numbers.map((number) => digits(number, 3));
     const words = [found.name, `${data.chart.x}: ${x}`, `${data.chart.y}: ${y}`];
@@ -176,7 +186,8 @@ document.addEventListener("pointerup", (event) => {
   const { svg, x } = held, end = pointIn(svg, event).x, { x: [low, high], across } = drawn.get(svg);
   held = null;
   over(event);
+  if (!svg.isConnected || Math.abs(end - x) <= DRAGGED) return;
   const value = (place) => Math.min(high, Math.max(low, low + ((place - LEFT) * (high - low)) / (across(high) - LEFT)));
-  if (svg.isConnected && Math.abs(end - x) > DRAGGED) svg.closest("figure").show([value(Math.min(x, end)), value(Math.max(x, end))]);
+  svg.closest("figure").show([value(Math.min(x, end)), value(Math.max(x, end))]);
 });
 document.addEventListener("dblclick", (event) => hit(event, ".chart svg[data-chart]")?.closest("figure").show(null));

@@ -15,7 +15,7 @@ function cells({ radii, angles, percents }, centre) {
     return `<path fill="${colour}" stroke="${colour}" stroke-width="0.4" d="M${corners.join("L")}Z"/>`;
   })).join("");
 }
-/** Draw the ball by its radii from the load's axis to the back, the same on both sides. @param {any} ball  @param {number[]} centre */
+/** Draw the ball by its radii from the load's axis to the back. @param {any} ball  @param {number[]} centre */
 function ball({ radii, tilt }, centre) {
   const step = Math.PI / (radii.length - 1);
   const side = (sign) => radii.map((radius, index) => corner(centre, radius, sign * index * step - tilt));
