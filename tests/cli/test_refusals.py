@@ -107,7 +107,7 @@ curve {hip} --model hertz --gap linear => hertz has no choice of the gap; models
 press {hip} --element-size '1 mm' => --element-size is for the finite elements: add --model fem
 press {hip} --plastic --half-angle '40 deg' => a yielding liner is pressed by force or indentation
 map {hip} --force 1kN --limit collapse_load>=1kN => collapse_load needs finite elements whose liner yields
-curve {hip} --force 1kN --both-signs --model hertz => hertz has no opposite load: its socket is a full sphere
+curve {hip} --force 1kN --both-signs --model hertz => hertz presses towards the dome only: for --both-signs use sphere
 curve {hip} --force 1kN --plastic --model exact => exact has no liner that yields: use fem
 press {hip} --plastic --hardening 20 => hardening = '20' must be points 'stress:plastic strain'
 press {hip} --model fem --interface glued => interface = 'glued' is not allowed: 'bonded' or 'sliding'

@@ -331,20 +331,19 @@ def curve(
 def _press_both_ways(model: Model, joint: Joint, kind: str, loads: Numbers) -> tuple[Contact, dict[str, Numbers]]:
     """Press along the direction of a load, and against it for negative loads; return force and displacement with signs.
 
-    Raises ValueError: a model without a direction.
+    Raises ValueError: a model that presses towards the dome only.
     """
-    direction = getattr(model, "direction", None)
-    if model.name != OFF_AXIS or direction is None:
-        raise ValueError(
-            f"{model.name} has no opposite load: its socket is a full sphere; for --both-signs use {OFF_AXIS}"
-        )
+    from ..elasticity.off_axis.model import Sphere  # slow to import
+
+    if not isinstance(model, Sphere):
+        raise ValueError(f"{model.name} presses towards the dome only: for --both-signs use {OFF_AXIS}")
     signs, clearance = numpy.where(loads < 0.0, -1.0, 1.0), float(joint.clearance)
     if kind == "indentation":  # a displacement from the centre; within the clearance there is no contact
         displacement = loads + numpy.sign(loads) * max(clearance, 0.0)
         loads = numpy.maximum(abs(displacement) - clearance, 0.0)
-    pressed: Any = model
-    contact = pressed.press(joint, direction=signs[:, None] * direction, **{kind: abs(loads)})
+    pressed: dict[str, Any] = {kind: abs(loads), "direction": signs[:, None] * model.direction}
+    contact = model.press(joint, **pressed)
     if kind != "indentation":
-        displacement = signs * (contact.indentation + clearance)
-    reached = numpy.where(numpy.isfinite(contact.indentation), displacement, numpy.nan)
-    return contact, {"force": signs * contact.force, "displacement_along_load": reached}
+        moved = signs * (contact.indentation + clearance)
+        displacement = numpy.where(numpy.isfinite(moved), moved, numpy.nan)
+    return contact, {"force": signs * contact.force, "displacement_along_load": displacement}
