@@ -303,6 +303,7 @@ class FiniteElement(Model):
     smooth_step: ClassVar[float] = 3e-2
     seconds_a_press: ClassVar[float] = 0.2
     name: ClassVar[str] = "fem"
+    _sequence: ClassVar[str] = "press"  # method of the load curve
 
     @property
     def title(self) -> str:
@@ -445,7 +446,8 @@ class FiniteElement(Model):
         hardening = joint.liner.yield_curve
 
         def solve(single: Joint, loads: Numbers) -> JointContacts:
-            return self._press_curve(self._curve_of(single, hardening), kind, loads)
+            contacts: JointContacts = getattr(self._curve_of(single, hardening), self._sequence)(kind, loads)
+            return contacts
 
         solution = solve_per_joint(self, joint, load, solve)
         return SolverResult(
@@ -472,14 +474,8 @@ class FiniteElement(Model):
             raise ValueError("a liner that yields needs hardening or yield_stress in its material, one number each")
         return plastic_curve_of(*inputs, hardening)
 
-    def _press_curve(self, curve: Any, kind: str, loads: Numbers) -> JointContacts:
-        contacts: JointContacts = curve.press(kind, loads)
-        return contacts
-
 
 class _LoadPath(FiniteElement):
     """Finite elements whose liner keeps the plastic strain of the previous loads of an array."""
 
-    def _press_curve(self, curve: Any, kind: str, loads: Numbers) -> JointContacts:
-        contacts: JointContacts = curve.follow(kind, loads)
-        return contacts
+    _sequence: ClassVar[str] = "follow"
