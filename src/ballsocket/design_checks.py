@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from math import nextafter, pi
+from math import nextafter
 from typing import Any
 
 from .contact import Contact
@@ -35,8 +35,7 @@ def checks_of(contact: Contact, cup: Cup, von_mises: float | None = None) -> tup
     """
     is_forced = contact.yields and float(contact.force) > 0
     if contact.status.failed:
-        # in a deeper cup the pressure nodes may end before the liner collapses
-        may_collapse = is_forced and contact.status is Status.NOT_REACHED and cup.rim <= pi / 2
+        may_collapse = is_forced and contact.status is Status.NOT_REACHED
         return tuple(row for row in _yield_checks(contact) if row.verdict is Verdict.EXCEEDED) if may_collapse else ()
     joint, radius = contact.joint, float(contact.joint.socket_radius)
     reach_of: Any = getattr(contact.model, "reach_of", None)

@@ -155,6 +155,21 @@ def test_the_first_number_comes_with_its_own_check():
     assert "no allowable pressure of the liner is known" in told(page, "press-numbers")
 
 
+def test_a_liner_takes_its_own_hardening_as_files_do():
+    page = Page("preset=hip-28")
+    assert page.channel.shown_value("=hardening")["value"] == str(bs.UHMWPE.hardening)
+    edits(page, "hardening", "20:0, 24 MPa:0.01; E 1.2 GPa")
+    curve = bs.Hardening(stress=(20.0, 24.0), plastic_strain=(0.0, 0.01), young=1200.0)
+    assert page.screen.file.joint.liner.hardening == curve
+    assert Page(page.screen.link).screen.file.joint.liner.hardening == curve
+    edits(page, "hardening", "20:0, 18:0.1")
+    assert "stresses do not descend" in trouble(page)
+    edits(page, "hardening", "20")
+    assert "must be points" in trouble(page)
+    edits(page, "hardening", "")
+    assert page.screen.file.joint.liner.hardening is None
+
+
 def test_one_line_says_how_near_all_numbers_are():
     exact, other = (bs.catalogue[name].press(HIP, force=3000.0) for name in ("exact", "hess-forsbach"))
     assert accuracy_sentence(exact, exact) == "All within 0.001 % of the exact solution"

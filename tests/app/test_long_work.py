@@ -220,10 +220,23 @@ def until_the_end(run):
     return [news for news in heard if news is not None]
 
 
-def judging(force, **cup):
+def judging(force, yields=False, **cup):
     from ballsocket.app.views.finite_elements import run_finite_elements
 
-    return Run(partial(run_finite_elements, JointFile(HIP, {"force": force}, Cup(**cup))))
+    return Run(partial(run_finite_elements, JointFile(HIP, {"force": force}, Cup(**cup)), yields=yields))
+
+
+@pytest.mark.long
+def test_a_run_with_a_yielding_liner_has_its_set_and_its_checks():
+    found = until_the_end(judging(6000.0, yields=True))[-1].value
+    contact = bs.FiniteElement(plastic=True).press(HIP, force=6000.0)
+    assert found.numbers["permanent_set"] == pytest.approx(contact.permanent_set, rel=1e-3)  # rounded for JSON
+    assert "collapse load" in [row.limit for row in found.checks]
+    assert found.numbers.keys() - found.exact.keys() >= {"permanent_set", "plastic_fraction", "repeated_work"}
+    page = Page("view=judge&liner_law=yielding")
+    assert page.channel.shown_value("=judge.liner_law")["value"] == "yielding"
+    edits(page, "judge.liner_law", "elastic")
+    assert "liner_law" not in page.screen.link
 
 
 @pytest.mark.long

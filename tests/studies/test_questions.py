@@ -327,12 +327,14 @@ def test_a_study_file_has_design_model_joint_and_store(tmp_path, write_study):
     correlated = read_study(write_study("seed = 3", 'correlation = ["clearance, liner_young = 0.5"]'))
     assert correlated.design.axes[0].correlation == ((("clearance", "liner_young"), 0.5),)
     assert read_study(write_study("[axes]", '[table]\npath = "rows.csv"\n[axes]')).design.shape == (2, 8, 5, 2)
+    assert read_study(write_study('"hess-forsbach"', '"fem"\nplastic = true')).model.plastic
 
 
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
         ('model = "hess-forsbach"', 'model = ["a"]', r"model \['a'\] is not known; known: exact"),
+        ("[axes]", "plastic = true\n[axes]", "hess-forsbach has no liner that yields: use fem"),
         ('joint = "hip.toml"', 'joint = "hop.toml"', "'hop.toml' is neither a file nor a preset"),
         ("count = 5", "count = 1e12", "16 000 000 000 000 points take about"),
         ("count = 5}", "count = 5", "is not TOML"),
@@ -350,7 +352,7 @@ def test_a_study_file_has_design_model_joint_and_store(tmp_path, write_study):
         ("[axes]", "[engine]\nkind = 'processes'\nworkers = 1e9\n[axes]", "workers = 1000000000 is not allowed"),
         ('"out/s.zarr"', r'"out/s\u001b[31m.zarr"', "store = .* no control characters"),
     ],
-    ids=range(17),
+    ids=range(18),
 )
 def test_bad_study_files_are_one_sentence_on_the_command_line(tmp_path, write_study, old, new, message):
     write_study(old, new)

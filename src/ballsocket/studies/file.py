@@ -30,7 +30,7 @@ from ..files.schema import (
 from ..files.tables import parsed_values, read_table
 from ..files.toml import read_toml
 from ..files.units import as_given, parse
-from ..model_catalogue import named_models, with_gap
+from ..model_catalogue import named_models, with_gap, with_yielding
 from ..problem import Joint
 from ..problem.gaps import GAP_KINDS
 from ..problem.presets import materials, named_material
@@ -172,6 +172,7 @@ class StudyTable(JointTables, frozen=True, kw_only=True):
 
     model: Annotated[ModelName, meaning("name of the model")] = ModelName("hess-forsbach")
     gap: ModelGap = None
+    plastic: Annotated[bool, meaning("true for finite elements whose liner may yield")] = False
     axes: AxesTable | None = None
     samples: SamplesTable | None = None
     table: RowsTable | None = None
@@ -216,6 +217,7 @@ def _study(content: Mapping[str, Any], folder: Path) -> StudyFile:
     tables = read_table(content, StudyTable)
     file = joint_in(tables, folder)
     model = with_gap(named_models[tables.model], tables.gap).in_cup(file.cup, **file.aim)
+    model = with_yielding(model) if tables.plastic else model
     design = _design(tables, content, folder)
     if not any(name in LOADS for name in design.names):
         design = design * grid(**file.load)

@@ -292,6 +292,28 @@ def test_a_liner_that_collapses_has_no_result():
 
 
 @pytest.mark.long
+@pytest.mark.parametrize("clearance", some([0.5, 0.1, 1.0], 1))
+def test_a_liner_bears_each_force_up_to_its_collapse_load_and_none_beyond(clearance):
+    """The rim flows long before a small contact collapses, and full Newton steps diverge there."""
+    liner = bs.Material(young=1494.0, poisson=0.46, hardening=bs.Hardening(stress=(12.0,)))
+    joint = bs.joints["hip-28"].replace(clearance=clearance, liner=liner)
+    collapse = MODEL.collapse_load(joint)
+    contact = MODEL.press(joint, force=collapse * np.array([0.5, 0.8, 0.95, 1.02]))
+    assert np.isfinite(contact.indentation).tolist() == [True, True, True, False]
+    assert (np.diff(contact.indentation[:3]) > 0).all()
+
+
+def test_the_rim_of_a_deep_cup_raises_its_collapse_load():
+    """The contact ends at 88 degrees there; a cap under a mean pressure of the yield stress is a lower bound."""
+    weak = JOINT.replace(liner=replace(JOINT.liner, hardening=bs.Hardening(stress=(10.0,))))
+    loads = [
+        replace(MODEL, spacing=bs.Adapted(elements=24), cup=bs.Cup(arc_of_cover=np.radians(arc))).collapse_load(weak)
+        for arc in (180.0, 200.0, 220.0)
+    ]
+    assert pi * JOINT.socket_radius**2 * 10.0 < loads[0] < loads[1] < loads[2]
+
+
+@pytest.mark.long
 def test_a_force_beyond_the_collapse_load_exceeds_it():
     weak = JOINT.replace(liner=replace(JOINT.liner, hardening=bs.Hardening(stress=(10.0,))))
     model = replace(MODEL, spacing=bs.Adapted(elements=24))

@@ -30,6 +30,7 @@ from .use import DEFAULT_USE, Use
 VIEWS = tuple(VIEW_CLASSES)
 THEMES = ("light", "dark")
 ANGLES, SIZES = ("degrees", "radians"), ("radius", "diameter")
+LINER_LAWS = ("elastic", "yielding")  # of the finite elements
 PAINTED = ("pressure", "stress")  # fields on the drawing of the joint
 
 QUICK = tuple(name for name, model in catalogue.items() if model.seconds_a_press < 1e-4)
@@ -126,6 +127,7 @@ class Screen:
     picked: tuple[float, float] | None = None  # values of `across` and `up` at the chosen point of the map
     use: Use = DEFAULT_USE
     painted: str = "pressure"
+    liner_law: str = "elastic"
     asked: EvidenceQuestion = DEFAULT_QUESTION
     angle: str = "degrees"
     size: str = "diameter"
@@ -165,6 +167,7 @@ _KNOWN: Mapping[str, Sequence[str]] = {
     "base": BASES,
     "sizes": PICKED,
     "painted": PAINTED,
+    "liner_law": LINER_LAWS,
     "angle": ANGLES,
     "size": SIZES,
     "units": tuple(system.value for system in Units),

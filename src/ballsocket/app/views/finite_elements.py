@@ -14,13 +14,13 @@ import numpy
 from ...comparison import relative_deviation
 from ...contact.describe import to_summary
 from ...core.answers import Check
-from ...core.quantities import CONTACT, JOINT
+from ...core.quantities import CONTACT, JOINT, PLASTIC
 from ...core.unit_systems import Units
 from ...core.validity import OutsideDomainError
 from ...design_checks import checks_of
 from ...elasticity.finite_elements.model import MeshedContact
 from ...files.joint_file import JointFile
-from ...model_catalogue import JUDGE, named_models, reference
+from ...model_catalogue import JUDGE, named_models, reference, with_yielding
 from ...question import complete
 from ...reports.joint_drawing import profile
 from ...reports.pages import picture
@@ -32,16 +32,17 @@ from ..pictures.section import extent_of, section
 from ..pressing import pressure_chart
 from ..results import without_name
 from ..running import Reached, Report, Work
-from ..state.screen import Screen
+from ..state.screen import LINER_LAWS, Screen
 from ..view import Document, field_places
 from ..widgets.blocks import Content, notes_list, sentence, table
-from ..widgets.controls import Control
+from ..widgets.controls import Control, chosen, segments
 from ..widgets.joint_controls import cup_controls
 from ..widgets.reading import number_text
 from ..widgets.words import checked, distinct_quantities, percent
 
 _NAME = "judge"
-_FIELDS = ("arc_of_cover", "chamfer", "interface")
+_CUP_FIELDS = ("arc_of_cover", "chamfer", "interface")
+_FIELDS = (*_CUP_FIELDS, "liner_law")
 _LOAD_STEPS = (0.25, 0.5, 0.75, 1.0)
 
 
@@ -58,13 +59,14 @@ class ElementCheck(LongView):
     def question_of(self, screen: Screen) -> Hashable:
         file, cup = screen.file, screen.file.cup
         load = tuple(file.load.items())
-        return without_name(file.joint), load, file.tilt, cup.arc_of_cover, cup.chamfer, cup.interface
+        return without_name(file.joint), load, file.tilt, cup.arc_of_cover, cup.chamfer, cup.interface, screen.liner_law
 
     def work(self, screen: Screen) -> Work:
-        return partial(run_finite_elements, screen.file)
+        return partial(run_finite_elements, screen.file, yields=screen.liner_law == "yielding")
 
     def controls(self, screen: Screen) -> list[Control]:
-        return [control for control in cup_controls(screen) if control.field["name"] in _FIELDS]
+        of_cup = [control for control in cup_controls(screen) if control.field["name"] in _CUP_FIELDS]
+        return [*of_cup, chosen(screen, "liner_law", "Liner", LINER_LAWS, segments)]
 
     def show_result(self, screen: Screen, result: ElementResult | None) -> None:
         if result is None:
@@ -80,8 +82,8 @@ class ElementCheck(LongView):
         exact = result.exact or {}
         rows = [
             [entry.key, result.numbers[entry.key], result.error.get(entry.name, ""), exact.get(entry.key, "")]
-            for entry in CONTACT.values()
-            if isinstance(result.numbers[entry.key], float)
+            for entry in {**CONTACT, **PLASTIC}.values()
+            if isinstance(result.numbers.get(entry.key), float)
         ]
         figure = picture(result.figures["png"][units], "mesh, von Mises stress, and pressure beside the exact one")
         return Document(
@@ -108,14 +110,16 @@ def _pictures(result: ElementResult, screen: Screen) -> Content:
 
 def _numbers(result: ElementResult, screen: Screen) -> list[Any]:
     rows = []
-    for quantity in distinct_quantities(result.numbers[CONTACT["max_pressure_angle"].key]):
+    yielding = [quantity for quantity in PLASTIC.values() if quantity.key in result.numbers]
+    for quantity in [*distinct_quantities(result.numbers[CONTACT["max_pressure_angle"].key]), *yielding]:
         unit = screen.reading.unit(quantity)
         factor = unit.factor / quantity.written.factor  # the numbers are those of JSON
         value = result.numbers[quantity.key] * factor
         error = result.error.get(quantity.name)
         unit_text = unit.text.replace(" ", "\N{NO-BREAK SPACE}")
-        row = [f"{quantity.title} [{unit_text}]", number_text(value), percent(error) if error else "–"]
-        if result.exact is None:
+        title = f"{quantity.title} [{unit_text}]" if unit_text else quantity.title
+        row = [title, number_text(value), percent(error) if error else "–"]
+        if result.exact is None or quantity.key not in result.exact:
             row += ["–", "–"]
         else:
             exact = result.exact[quantity.key] * factor
@@ -148,10 +152,11 @@ class ElementResult:
     figures: dict[str, dict[Units, bytes]]  # by the format
 
 
-def run_finite_elements(file: JointFile, report: Report) -> ElementResult:
-    """Press a joint in load steps by finite elements, and report progress as `Reached`."""
+def run_finite_elements(file: JointFile, report: Report, *, yields: bool = False) -> ElementResult:
+    """Press a joint in load steps by finite elements, and report progress as `Reached`; its liner may yield."""
     start = time.perf_counter()
     model = named_models[JUDGE].in_cup(file.cup, **file.aim)
+    model = with_yielding(model) if yields else model
     ((kind, load),) = file.load.items()
     report(Reached(share=0.05, words="making the meshes"))
     for share in _LOAD_STEPS:

@@ -33,6 +33,7 @@ _NO_CHOICE, _REMOVE = "", "away"
 _NEW_THICKNESS, _MAX_LAYERS = 3.0, 20  # mm of a layer that is added; number of layers
 _BODY, _AXIS = "body", "axis"
 _AIMS = {_BODY: "in the body", _AXIS: "from the cup's axis"}
+_HARDENING = "Hardening, MPa:plastic strain"
 _ALLOWABLE = number_of("liner.allowable_pressure")
 _TILT = number_of("load.tilt", label="Tilt of the load")
 _MEDIAL = {Side.RIGHT: -1.0, Side.LEFT: 1.0}  # sign of the body's x axis that points medially
@@ -74,6 +75,7 @@ def joint_controls(screen: Screen) -> list[Control]:
         _control(choice("liner", "Liner", _MATERIALS, liner), partial(_with_material, file, "liner")),
         *_moduli(screen, "liner"),
         Control(allowable.field, lambda value: {"file": unlimited()} if value == "" else allowable.read(value)),
+        _control(words("hardening", _HARDENING, str(joint.liner.hardening or "")), partial(_with_hardening, file)),
         *_thicknesses(screen),
         _control(choice("ball", "Ball", ((_RIGID, "rigid"), *_MATERIALS), ball), partial(_with_material, file, "ball")),
         *_moduli(screen, "ball"),
@@ -117,7 +119,7 @@ def _thicknesses(screen: Screen) -> Iterator[Control]:
 
 def _chosen(table: Tables) -> str:
     """Return the name of a material, or "own" if a number differs from it."""
-    return str(table["material"]) if set(table) - set(STRESS_LIMITS) == {"material"} else _CUSTOM
+    return str(table["material"]) if set(table) - {*STRESS_LIMITS, "hardening"} == {"material"} else _CUSTOM
 
 
 def joint_words(joint: Joint) -> str:
@@ -131,6 +133,13 @@ def joint_words(joint: Joint) -> str:
 def _with_number(file: JointFile, part: str, key: str, value: float) -> JointFile:
     """Set a number of the material of liner or ball."""
     return _with_joint(file, **{part: getattr(varied(file, {part: {key: value}}).joint, part)})
+
+
+def _with_hardening(file: JointFile, text: Any) -> JointFile:
+    """Change the hardening of the liner; empty is a liner without one."""
+    if text == "":
+        return _with_joint(file, liner=replace(file.joint.liner, hardening=None))
+    return _with_joint(file, liner=varied(file, {"liner": {"hardening": text}}).joint.liner)
 
 
 def _with_thickness(file: JointFile, index: int, value: float) -> JointFile:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache, partial
 from math import degrees, inf, nan, prod
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy
@@ -28,12 +29,14 @@ from ...core.validity import SMALL_STRAIN, OutsideDomainError, Range, Remark, St
 from ...problem import Joint
 from ...problem.cup import AXIAL_TILT, Cup
 from ...problem.gaps import GapKind, check_gap, gap_remarks, gap_validity, select_gap
+from ...problem.hardening import Hardening
 from .spacing import SPACINGS, Adapted, Element, MeshSize, Spacing, Uniform, mesh_size
 
 if TYPE_CHECKING:
     from .load_search import Solved
     from .plastic_curve import PlasticLoadCurve
     from .section import Section
+    from .solver import MeshedLoadCurve
 
 
 def _plastic_property(name: str) -> Any:
@@ -234,7 +237,6 @@ def _is_elastic(contact: Any) -> bool:
 
 
 _TOLERANCE = 1e-3  # relative, of loads and the thickness at a limit
-_MAX_DOUBLINGS = 20  # of the load from which these are bisected
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -301,6 +303,7 @@ class FiniteElement(Model):
     smooth_step: ClassVar[float] = 3e-2
     seconds_a_press: ClassVar[float] = 0.2
     name: ClassVar[str] = "fem"
+    _sequence: ClassVar[str] = "press"  # method of the load curve
 
     @property
     def title(self) -> str:
@@ -393,22 +396,23 @@ class FiniteElement(Model):
         return self._largest_force(joint, _is_elastic)
 
     def collapse_load(self, joint: Joint) -> float:
-        """Compute the largest force in N that a joint of plain numbers with a yielding liner bears, within 0.1 %."""
-        return self._largest_force(joint, lambda contact: not contact.status.failed)
+        """Compute the largest force in N that a joint of plain numbers with a yielding liner bears, within 0.1 %.
+
+        NaN outside the domain.
+        """
+        if not all(limit.strictly_holds(SimpleNamespace(joint=joint)) for limit in self.domain):
+            return nan
+        curve: Any = replace(self, meshes=1, plastic=True)._curve_of(joint.without_strengths(), joint.liner.yield_curve)
+        return float(curve.collapse_load())
 
     def shakedown_load(self, joint: Joint) -> float:
         """Compute the largest force in N whose repetitions add no plastic work, within 0.1 %; see `repeated_work`."""
         return self._largest_force(joint, lambda contact: not contact.status.failed and _SHAKEDOWN.holds(contact))
 
     def _largest_force(self, joint: Joint, bears: Callable[[Any], bool]) -> float:
-        """Bisect for the largest force in N that a socket bears, from its mean pressure at the yield stress."""
-        model, curve = replace(self, meshes=1, plastic=True), joint.liner.yield_curve
-        low, high = 0.0, 3.0 * (curve.stress[-1] if curve else 1.0) * float(joint.ball_radius) ** 2
-        for _ in range(_MAX_DOUBLINGS):
-            if not bears(model.press(joint, force=high)):
-                return bisect(low, high, lambda force: bears(model.press(joint, force=force)), tolerance=_TOLERANCE)
-            low, high = high, 2 * high
-        return inf
+        """Bisect below the collapse load for the largest force in N that a socket bears."""
+        model, collapse = replace(self, meshes=1, plastic=True), self.collapse_load(joint)
+        return bisect(0.0, collapse, lambda force: bears(model.press(joint, force=force)), tolerance=_TOLERANCE)
 
     def minimum_thickness(self, joint: Joint, force: float) -> float:
         """Compute the smallest thickness in mm of a liner that is elastic under a force in N, within 0.1 %.
@@ -437,22 +441,13 @@ class FiniteElement(Model):
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
         needs("fem", "skfem", "psutil")
-        hardening = joint.liner.yield_curve
-        if self.plastic and hardening is None:
-            raise ValueError("a liner that yields needs hardening or yield_stress in its material, one number each")
         if self.plastic and kind == "half_angle":
             raise ValueError("a yielding liner is pressed by force or indentation, not by half_angle")
+        hardening = joint.liner.yield_curve
 
         def solve(single: Joint, loads: Numbers) -> JointContacts:
-            from .plastic_curve import plastic_curve_of  # slow to import
-            from .solver import load_curve_of
-
-            gap: Any = select_gap(self.gap, single)
-            spacings = self.spacing, self.ball_spacing or self.spacing
-            inputs = single, self.cup, spacings, self.element.value, self.meshes, gap
-            if self.plastic and hardening is not None:
-                return self._plastic_contacts(plastic_curve_of(*inputs, hardening), kind, loads)
-            return load_curve_of(*inputs).press(kind, loads)
+            contacts: JointContacts = getattr(self._curve_of(single, hardening), self._sequence)(kind, loads)
+            return contacts
 
         solution = solve_per_joint(self, joint, load, solve)
         return SolverResult(
@@ -465,12 +460,22 @@ class FiniteElement(Model):
             },
         )
 
-    def _plastic_contacts(self, curve: PlasticLoadCurve, kind: str, loads: Numbers) -> JointContacts:
-        return curve.press(kind, loads)
+    def _curve_of(self, joint: Joint, hardening: Hardening | None) -> MeshedLoadCurve | PlasticLoadCurve:
+        """Return the load curve of a joint of plain numbers, whose liner yields by the hardening if it may yield."""
+        from .plastic_curve import plastic_curve_of  # slow to import
+        from .solver import load_curve_of
+
+        gap: Any = select_gap(self.gap, joint)
+        spacings = self.spacing, self.ball_spacing or self.spacing
+        inputs = joint, self.cup, spacings, self.element.value, self.meshes, gap
+        if not self.plastic:
+            return load_curve_of(*inputs)
+        if hardening is None:
+            raise ValueError("a liner that yields needs hardening or yield_stress in its material, one number each")
+        return plastic_curve_of(*inputs, hardening)
 
 
 class _LoadPath(FiniteElement):
     """Finite elements whose liner keeps the plastic strain of the previous loads of an array."""
 
-    def _plastic_contacts(self, curve: PlasticLoadCurve, kind: str, loads: Numbers) -> JointContacts:
-        return curve.follow(kind, loads)
+    _sequence: ClassVar[str] = "follow"

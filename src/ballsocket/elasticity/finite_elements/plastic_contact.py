@@ -1,18 +1,20 @@
 """Contact of a ball with a socket whose liner yields, along a path of loads.
 
-Each increment is solved by Newton's method with the consistent tangent. Its linear problem is a contact problem on the
-bore: the tangent compliance of the socket and the compliance of the ball, with pressures that are linear between the
-corners of elements. An active set makes each pressure positive or its gap open. The contact need not be a cap: after a
-permanent set it can begin anywhere.
+Each increment is solved by Newton's method with the consistent tangent, whose steps end at the lowest energy if they
+raise the residual: near collapse, where the tangent is soft, full ones diverge. Its linear problem is a contact problem
+on the bore: the tangent compliance of the socket and the compliance of the ball, with pressures that are linear between
+the corners of elements. An active set makes each pressure positive or its gap open. The contact need not be a cap:
+after a permanent set it can begin anywhere.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 import numpy
+from scipy.optimize import brentq
 
 from ...core.arrays import Numbers
 from ...core.quantities import SHAKEDOWN_WORK
@@ -22,9 +24,8 @@ from .pair_contact import edge_beyond, pressure_at_pole
 from .plastic_body import PlasticBody, Tangent
 from .plasticity import PlasticStrain
 
-_MAX_ITERATIONS, _MAX_SET_CHANGES = 20, 60
+_MAX_ITERATIONS, _MAX_SET_CHANGES = 50, 60
 _TOLERANCE = 1e-8  # of the nodal forces, relative
-_SMALLEST_STEP = 1 / 64  # of the way to a load
 _MAX_REPETITIONS = 20  # of a load
 _START_FRACTION = 0.25  # of the nodes: first guess of a contact
 _GAP_STEP = 1e-6  # over the radius
@@ -163,6 +164,22 @@ class PlasticContact:
         return float(socket + ball) + self.plastic_work
 
 
+class _Response(NamedTuple):
+    """Strain deviators of a liner, their plastic strain and factors of the tangent, and nodal forces on the socket."""
+
+    strain: Numbers
+    plastic: PlasticStrain
+    a: Numbers
+    b: Numbers
+    forces: Numbers  # of the pressures
+    internal: Numbers  # of the stresses
+
+    @property
+    def residual(self) -> float:
+        """Norm of the forces without equilibrium."""
+        return float(numpy.linalg.norm(self.forces - self.internal))
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PlasticPath:
     """Surfaces in contact, of which the socket yields; `young` is the liner's modulus in MPa."""
@@ -210,55 +227,71 @@ class PlasticPath:
         )
 
     def approach(self, kind: str, load: float, contact: PlasticContact) -> PlasticContact | None:
-        """Go from a contact to a load ("force" in N, "indentation" in mm), in halved steps where one does not converge.
+        """Go from a contact to a load ("force" in N, "indentation" in mm) at once; None without equilibrium."""
+        try:
+            return self._increment(kind, load, contact)
+        except (numpy.linalg.LinAlgError, RuntimeError):  # singular: a liner that collapses has no stiffness
+            return None
 
-        None is a load without equilibrium.
-        """
-        start, done, step = float(getattr(contact, kind)), 0.0, 1.0
-        while done < 1:
-            step = min(step, 1 - done)
-            target = load if step == 1 - done else start + (done + step) * (load - start)
-            try:
-                following = self._increment(kind, target, contact)
-            except (numpy.linalg.LinAlgError, RuntimeError):  # singular: a liner that collapses has no stiffness
-                following = None
-            if following is not None:
-                contact, done, step = following, done + step, 2 * step
-            elif step > _SMALLEST_STEP:
-                step /= 2
-            else:
-                return None
-        return contact
+    def _nodal_forces(self, pressures: Numbers) -> Numbers:
+        """Compute the forces of pressures on the free unknowns of the socket."""
+        forces = numpy.zeros(len(self.body.free_unknowns))
+        forces[-len(self.body.body.contact) :] = self.pair.forces[0] @ pressures / (self.young * self.pair.radius**2)
+        return forces
+
+    def _respond(self, state: Numbers, old: PlasticStrain) -> _Response:
+        """Compute the response to a state: displacements of the socket, then pressures, then the indentation."""
+        size = len(self.body.free_unknowns)
+        strain = self.body.strain(state[:size])
+        plastic, a, b = self.body.law.update(strain, old)
+        internal = self.body.internal_forces(state[:size], plastic)
+        return _Response(strain, plastic, a, b, self._nodal_forces(state[size:-1]), internal)
 
     def _increment(self, kind: str, load: float, old: PlasticContact) -> PlasticContact | None:
         """Solve one increment from an equilibrium to a load; None if Newton's method does not converge."""
-        body = self.body
-        force_unit = self.young * self.pair.radius**2
-        u, d, pressures = old.displacement, old.indentation, old.pressures
-        scale = numpy.linalg.norm(old.forces(0)) / force_unit
-        strain = body.strain(u)
-        plastic, a, b = body.law.update(strain, old.plastic)
+        size = len(old.displacement)
+        state = numpy.concatenate([old.displacement, old.pressures, [old.indentation]])
+        response, residual = self._respond(state, old.plastic), numpy.inf
+        scale = numpy.linalg.norm(response.forces)
         for _ in range(_MAX_ITERATIONS):
-            tangent = body.tangent(strain, plastic, a, b)
-            u = u - tangent.factors.solve(body.internal_forces(u, plastic))
-            previous, linear = d, self._solve_contact(kind, load, tangent, u, pressures, d)
+            tangent = self.body.tangent(*response[:4])
+            unloaded = state[:size] - tangent.factors.solve(response.internal)
+            linear = self._solve_contact(kind, load, tangent, unloaded, state[size:-1], state[-1])
             if linear is None:
                 return None
             pressures, d, stiffness = linear
-            forces = numpy.zeros(len(u))
-            forces[-tangent.count :] = self.pair.forces[0] @ pressures / force_unit
-            u = u + tangent.factors.solve(forces)
-            strain = body.strain(u)
-            plastic, a, b = body.law.update(strain, old.plastic)
-            residual = numpy.linalg.norm(forces - body.internal_forces(u, plastic))
-            is_linear = abs(d - previous) <= 1e-4 * abs(d) or self.gap.steps == 1
-            if residual <= _TOLERANCE * max(numpy.linalg.norm(forces), scale) and is_linear:
+            moved = tangent.factors.solve(self._nodal_forces(pressures) - response.internal)
+            step = numpy.concatenate([moved, pressures - state[size:-1], [d - state[-1]]])
+            response, previous = self._respond(state + step, old.plastic), residual
+            if response.residual > previous:
+                step *= self._share_of(step, state, old.plastic, load if kind == "force" else 0.0)
+                response = self._respond(state + step, old.plastic)
+            state, residual = state + step, response.residual
+            is_linear = abs(step[-1]) <= 1e-4 * abs(state[-1]) or self.gap.steps == 1
+            if residual <= _TOLERANCE * max(numpy.linalg.norm(response.forces), scale) and is_linear:
                 return PlasticContact(
-                    path=self, indentation=d, pressures=pressures, displacement=u, plastic=plastic, stiffness=stiffness
+                    path=self,
+                    indentation=float(state[-1]),
+                    pressures=state[size:-1],
+                    displacement=state[:size],
+                    plastic=response.plastic,
+                    stiffness=stiffness,
                 )
             if not numpy.isfinite(residual):
                 return None
         return None
+
+    def _share_of(self, step: Numbers, state: Numbers, old: PlasticStrain, force: float) -> float:
+        """Find the share of a step with the lowest energy, which is a convex function of the state."""
+        size = len(self.body.free_unknowns)
+        ball = self.ball_matrix @ step[size:-1]
+
+        def slope(share: float) -> float:
+            moved = state + share * step
+            socket = self._respond(moved, old).internal @ step[:size]
+            return float(self.energy_unit * socket + moved[size:-1] @ ball - force * step[-1])
+
+        return brentq(slope, 0.0, 1.0, xtol=1e-3, rtol=0.1) if slope(0.0) < 0 < slope(1.0) else 1.0
 
     def _solve_contact(
         self, kind: str, load: float, tangent: Tangent, unloaded: Numbers, pressures: Numbers, d: float
@@ -288,7 +321,7 @@ class PlasticPath:
             columns = numpy.column_stack([rise[nodes], openings[nodes]])
             by_depth, by_opening = numpy.linalg.solve(matrix[numpy.ix_(nodes, nodes)], columns).T
             stiffness = float(self.axial_areas[nodes] @ by_depth)
-            if not stiffness > 0:
+            if kind == "force" and not stiffness > 0:
                 return None
             d = (load + float(self.axial_areas[nodes] @ by_opening)) / stiffness if kind == "force" else load
             pressures = numpy.zeros(len(openings))

@@ -10,6 +10,7 @@ from typing import Any
 import numpy
 
 from ...contact.per_joint import QUANTITIES, JointContacts
+from ...contact.roots import bisect
 from ...core.arrays import Numbers
 from ...core.quantities import PLASTIC
 from ...problem import Joint
@@ -23,6 +24,7 @@ from .solver import COARSE, COARSEST, MeshedLoadCurve, MeshedStates, estimate_er
 from .spacing import Spacing
 
 _CONVERGENCE_ORDER = 2  # of force and displacement, measured
+_FORCE_TOLERANCE, _DEPTH_TOLERANCE = 1e-3, 0.1  # relative, of the collapse load and its indentation
 _RUNGS, _GROWTH = 8, 1.25  # increments up to the widest elastic contact of a mesh; ratio of the loads beyond
 
 
@@ -102,17 +104,41 @@ class PlasticLoadCurve:
         """Solve a load in increments that do not depend on the other loads, on a mesh that is wide enough."""
         for number in range(self.elastic.mesh_class(kind, load), -1, -1):
             ladder = self._ladders.setdefault((kind, number, mesh), [self._path(number, mesh).start])
-            contact: PlasticContact | None = ladder[-1]
-            while contact is not None and self._rung(kind, number, len(ladder)) < load and self._fits(contact, number):
-                contact = self._path(number, mesh).approach(kind, self._rung(kind, number, len(ladder)), contact)
-                if contact is None:
-                    return None
-                ladder.append(contact)
+            while self._rung(kind, number, len(ladder)) < load and self._fits(ladder[-1], number):
+                rung = self._path(number, mesh).approach(kind, self._rung(kind, number, len(ladder)), ladder[-1])
+                if rung is None:
+                    break
+                ladder.append(rung)
             below = sum(self._rung(kind, number, index) < load for index in range(1, len(ladder)))
             contact = self._path(number, mesh).approach(kind, load, ladder[below])
-            if contact is None or self._fits(contact, number):
+            if contact is not None and self._fits(contact, number):
                 return contact
         return None
+
+    def collapse_load(self) -> float:
+        """Find the largest force in N of all indentations up to the radius, from its tangent, within 0.1 %.
+
+        It does not depend on increments. In a cup of more than 180 degrees the contact may end at the last pressure
+        node, beyond which a pressure adds 0.1 % of force.
+        """
+        path, forces = self._path(0, COARSE), [0.0]
+        contact, depth = path.start, path.pair.radius * path.body.hardening.stress[0]
+
+        def rises(depth: float) -> bool:
+            nonlocal contact
+            deeper = path.approach("indentation", depth, contact)
+            if deeper is None:
+                return False
+            forces.append(deeper.force)
+            if deeper.stiffness * depth < _FORCE_TOLERANCE * deeper.force:
+                return False
+            contact = deeper
+            return True
+
+        while depth < path.pair.radius and rises(depth):
+            depth *= 2
+        bisect(depth / 2, depth, rises, tolerance=_DEPTH_TOLERANCE)
+        return max(forces)
 
     def _follow_on_mesh(self, kind: str, loads: list[float], mesh: int) -> list[PlasticContact | None]:
         """Solve a path of loads on the mesh of its largest load, or a wider one where the contact needs it.
