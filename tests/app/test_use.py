@@ -63,7 +63,8 @@ def simulated(page, simulate=simulate_gait):
 
 
 def played(page):
-    return json.loads(unescape(re.search(r"data-player='([^']*)'", told(page, "gait-courses"))[1]))
+    written = "".join(part for part in page.channel.shown_value("#gait-courses") if isinstance(part, str))
+    return json.loads(unescape(re.search(r"data-player='([^']*)'", written)[1]))
 
 
 def drawn(page):
@@ -342,9 +343,9 @@ def test_patients_whose_coefficient_scatters_make_the_band(nothing_is_known):
 @pytest.mark.long
 def test_the_view_of_finite_elements_shows_the_pressure_of_a_press_and_marks_it_after_a_change(at_once):
     page = opened("view=judge&preset=hip-28&load.force=3000")
-    row = re.search(r"largest pressure \[(.*?)</tr>", told(page, "judge-numbers"), re.DOTALL)[1]
+    (row,) = (row for row in cells(page, "judge-numbers") if row[0].startswith("largest pressure ["))
     contact = bs.FiniteElement().press(bs.joints["hip-28"], force=3000.0)
-    assert float(re.search(r"<td[^>]*>([\d.]+)", row)[1]) == pytest.approx(contact.max_pressure, rel=1e-3)
+    assert float(row[1]) == pytest.approx(contact.max_pressure, rel=1e-3)
     edits(page, "clearance", "0.3")
     assert "belong to earlier inputs" in told(page, "judge-earlier")
 
