@@ -249,11 +249,6 @@ ERROR = (
 )
 
 
-def error_of(found: Positions, reference: Positions) -> float:
-    """Largest difference from the reference, relative to its largest change."""
-    return float(abs(found - reference).max() / numpy.ptp(reference, axis=0).max())
-
-
 def write(folder: Path, names: Any = tuple(PROBLEMS)) -> dict[tuple[str, str], tuple[float, float]]:
     """Write the folder; return the error and the seconds of each program on each problem."""
     results = {}
@@ -270,8 +265,9 @@ def write(folder: Path, names: Any = tuple(PROBLEMS)) -> dict[tuple[str, str], t
         with TemporaryDirectory() as made:
             for program, solve in problem.programs(Path(made)).items():
                 start = time.process_time()
-                found = solve()
-                results[name, program] = error_of(found, problem.reference), time.process_time() - start
+                found, seconds = solve(), time.process_time() - start
+                error = abs(found - problem.reference).max() / numpy.ptp(problem.reference, axis=0).max()
+                results[name, program] = float(error), seconds
     rows = [f"| {problem} | {program} | {e:.1e} | {s:.2g} |" for (problem, program), (e, s) in results.items()]
     text = ["# Spherical joints with clearance", ERROR, "\n".join([HEAD, *rows])]
     (folder / "README.md").write_text("\n\n".join(text) + "\n", encoding="utf-8")

@@ -105,26 +105,23 @@ def _exudyn(add: Callable[..., Any], duration: float, step: float, samples: int)
     import exudyn as exu
     from exudyn import itemInterface as items  # noqa: N813 - a module's name
 
-    system = exu.SystemContainer()
-    mbs = system.AddSystem()
+    mbs = exu.SystemContainer().AddSystem()
     ground = mbs.AddObject(items.ObjectGround())
     links, bodies, pivot, (ball, socket) = _links(mbs, ground)
     add(mbs, socket, ball)
     kinds = exu.OutputVariableType
     seen = {"storeInternal": True}
-    ends = [
-        mbs.AddSensor(items.SensorMarker(markerNumber=each, outputVariableType=kinds.Position, **seen))
-        for each in (ball, socket)
-    ]
+    place = {"outputVariableType": kinds.Position, **seen}
+    ends = [mbs.AddSensor(items.SensorMarker(markerNumber=each, **place)) for each in (ball, socket)]
+    moving = kinds.Position, kinds.Velocity, kinds.AngularVelocityLocal
     sensors = [
-        [
-            mbs.AddSensor(items.SensorBody(bodyNumber=body, outputVariableType=kind, **seen))
-            for kind in (kinds.Position, kinds.Velocity, kinds.AngularVelocityLocal)
-        ]
+        [mbs.AddSensor(items.SensorBody(bodyNumber=body, outputVariableType=kind, **seen)) for kind in moving]
         for body in bodies
     ]
     mbs.Assemble()
-    mbs.SolveDynamic(_settings(exu, duration, step, samples), solverType=exu.DynamicSolverType.TrapezoidalIndex2)
+    settings = tools.exudyn_settings(duration, round(duration / step), samples)
+    settings.timeIntegration.newton.useModifiedNewton = True
+    mbs.SolveDynamic(settings, solverType=exu.DynamicSolverType.TrapezoidalIndex2)
     at, held = (mbs.GetSensorStoredData(each) for each in ends)
     arm = held[:, 1:] - pivot
     energy = numpy.zeros(len(at))
@@ -173,19 +170,6 @@ def _rod(mbs: Any, length: float, mass: float, start: numpy.ndarray, way: numpy.
 def _inertia(length: float, mass: float) -> numpy.ndarray:
     across = mass * length**2 / 12
     return numpy.array([mass * (1e-3 * BAR.THICK) ** 2 / 2, across, across])
-
-
-def _settings(exu: Any, duration: float, step: float, samples: int) -> Any:
-    settings = exu.SimulationSettings()
-    steps = settings.timeIntegration
-    steps.endTime, steps.numberOfSteps = duration, round(duration / step)
-    steps.newton.useModifiedNewton = True
-    steps.discontinuous.maxIterations = 1  # what a contact with a state of its own asks for
-    steps.discontinuous.ignoreMaxIterations = True
-    steps.verboseMode = 0
-    settings.solution.file.write = False
-    settings.solution.sensors.writePeriod = duration / (samples - 1)
-    return settings
 
 
 def measure() -> list[Row]:

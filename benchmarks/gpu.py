@@ -13,6 +13,7 @@ from typing import Any
 import ballsocket as bs
 
 from . import sphere
+from .curve import JOINT
 from .joints import jax_job, results
 from .report import Pair, Row, compare
 from .timing import MissingError, wall_time
@@ -58,16 +59,12 @@ def _presses(count: int) -> list[Pair]:
     return [
         Pair(f"{model.name}, {title}", jax_job(_press(model, joint), [numbers], count), "copy of seven arrays", copy)
         for model in (bs.HessForsbach(), bs.Tabulated())
-        for title, joint in (("one joint", _one_joint), ("a joint a press", _joint_each))
+        for title, joint in (("one joint", lambda numbers: JOINT), ("a joint a press", _joint_each))
     ]
 
 
 def _press(model: bs.Model, joint: Callable[[Any], bs.Joint]) -> Callable[[Any], Any]:
     return lambda numbers: results(model.press(joint(numbers), force=500.0 + 3500.0 * numbers[3]))
-
-
-def _one_joint(numbers: Any) -> bs.Joint:
-    return bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=bs.UHMWPE)
 
 
 def _joint_each(numbers: Any) -> bs.Joint:

@@ -21,7 +21,7 @@ from ballsocket.export.fmu import Fmu
 from ballsocket.models.modulus import bonded_layer
 
 from . import tools
-from .opensim_model import build, exported, force_job
+from .opensim_model import build, exported
 from .report import Pair, Row, compare, if_installed
 from .timing import Job, MissingError
 
@@ -58,11 +58,9 @@ def measure() -> list[Row]:
             pairs = [Pair("FMI 3, one set and one get of nine numbers", _fmu(folder))]
         except NoCompiler as missing:
             raise MissingError(str(missing)) from missing
-        modulus = float(bs.hess_forsbach(JOINT))
-        foundation = partial(force_job, JOINT, modulus, 1000, DEPTH)
         hollow = partial(_bounce, tools.exudyn_hollow_sphere, folder)
         hosts: tuple[tuple[str, str, Callable[[Path], Job], str, Callable[[], Job]], ...] = (
-            ("opensim", "a force", _force, "its elastic foundation, 924 faces", foundation),
+            ("opensim", "a force", _force, "its elastic foundation, 924 faces", _foundation),
             ("mujoco", "a step", partial(_bounce, tools.mujoco), "its own contact", lambda: Job(_plane, STEPS)),
             ("exudyn", "a step", partial(_bounce, tools.exudyn), "its own hollow sphere", hollow),
         )
@@ -79,6 +77,10 @@ def measure() -> list[Row]:
 
 def _force(folder: Path) -> Job:
     return exported(folder / f"{tools.NAME}.osim", float(JOINT.clearance)).job(DEPTH, CALLS)
+
+
+def _foundation() -> Job:
+    return build(JOINT, float(bs.hess_forsbach(JOINT)), 1000).job(DEPTH, 100)
 
 
 def _bounce(program: Callable[[tools.Bounce, Path], object], folder: Path) -> Job:
@@ -121,7 +123,6 @@ def _towards_half() -> list[Row]:
             job = ExportJob(element=bs.ForceElement(bs.Exact(), joint), name=tools.NAME, depth=1.25 * DEPTH)
             TARGETS["opensim"].write(job, Path(made))
             ours = exported(Path(made) / f"{tools.NAME}.osim", float(JOINT.clearance)).force(DEPTH)
-        pair = build(float(joint.ball_radius), float(joint.clearance), float(bonded_layer(joint)), 1000)
-        theirs = pair.force(DEPTH)
+        theirs = build(joint, float(bonded_layer(joint)), 1000).force(DEPTH)
         rows.append(Row(work, f"{100 * abs(ours / exact - 1):.2f} %", f"{rival}: {100 * (theirs / exact - 1):+.0f} %"))
     return rows

@@ -15,6 +15,7 @@ from scipy.sparse.linalg import spsolve
 import ballsocket as bs
 
 from .timing import Job
+from .tools import silent_opensim
 
 METRES, STIFFNESS = 1e-3, 1e9  # per millimetre; Pa/m per MPa/mm
 
@@ -38,10 +39,6 @@ class BallInSocket:
     def job(self, depth: float, calls: int) -> Job:
         """Force evaluations at two alternating positions, as in the steps of a simulation."""
         return Job(lambda: [self.force(depth * (1 + 1e-6 * (number % 2))) for number in range(calls)], calls)
-
-
-def force_job(joint: bs.Joint, modulus: float, faces: int, depth: float, calls: int = 100) -> Job:
-    return build(float(joint.ball_radius), float(joint.clearance), modulus, faces).job(depth, calls)
 
 
 def socket_mesh(radius: float, faces: int) -> tuple[numpy.ndarray, numpy.ndarray]:
@@ -88,16 +85,16 @@ def _centroids_near_sphere(vertices: numpy.ndarray, faces: numpy.ndarray, radius
     return vertices
 
 
-def build(ball_radius: float, clearance: float, foundation_modulus: float, faces: int) -> BallInSocket:
+def build(joint: bs.Joint, foundation_modulus: float, faces: int) -> BallInSocket:
     """The model, with about `faces` faces in the socket's mesh."""
-    opensim = _quiet()
+    opensim, ball_radius, clearance = silent_opensim(), float(joint.ball_radius), float(joint.clearance)
     vertices, triangles = socket_mesh((ball_radius + clearance) * METRES, faces)
     model, zero = opensim.Model(), opensim.Vec3(0)
     model.setGravity(zero)
     ball = opensim.Body("ball", 1.0, zero, opensim.Inertia(1.0, 1.0, 1.0))
-    joint = opensim.SliderJoint("slider", model.getGround(), ball)
+    slider = opensim.SliderJoint("slider", model.getGround(), ball)
     model.addBody(ball)
-    model.addJoint(joint)
+    model.addJoint(slider)
     contact = opensim.ElasticFoundationForce()
     contact.setStiffness(foundation_modulus * STIFFNESS)
     for name in ("socket", "sphere"):
@@ -111,20 +108,13 @@ def build(ball_radius: float, clearance: float, foundation_modulus: float, faces
         model.addContactGeometry(opensim.ContactSphere(ball_radius * METRES, zero, ball, "sphere"))
         model.addForce(contact)
         state = model.initSystem()  # reads the mesh: the folder must still exist
-    return BallInSocket(model, state, joint.getCoordinate(), ball.getMobilizedBodyIndex(), clearance)
+    return BallInSocket(model, state, slider.getCoordinate(), ball.getMobilizedBodyIndex(), clearance)
 
 
 def exported(path: Path, clearance: float) -> BallInSocket:
     """The model of a file of ours, with its expression for the force."""
-    model = _quiet().Model(str(path))
-    model.setGravity(_quiet().Vec3(0))
+    opensim = silent_opensim()
+    model = opensim.Model(str(path))
+    model.setGravity(opensim.Vec3(0))
     ball, along = model.getBodySet().get("ball"), model.getCoordinateSet().get("x")
     return BallInSocket(model, model.initSystem(), along, ball.getMobilizedBodyIndex(), clearance)
-
-
-def _quiet() -> Any:
-    import opensim
-
-    opensim.Logger.setLevelString("Error")
-    opensim.Logger.removeFileSink()  # no opensim.log in the working directory
-    return opensim

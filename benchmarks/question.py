@@ -17,7 +17,7 @@ import ballsocket as bs
 from ballsocket.compiled import compiled_law
 from ballsocket.models.kinematics import linear_force, linear_stiffness
 
-from .joints import newton
+from .joints import newton, results
 from .report import Pair, Row, compare
 from .timing import Job
 
@@ -55,11 +55,7 @@ def _formula(modulus: float, depth: float) -> tuple[Any, Any]:
 
 
 def _press(model: bs.Model) -> Job:
-    def press(force: float) -> None:
-        contact = model.press(JOINT, force=force)
-        _ = contact.indentation, contact.max_pressure, contact.half_angle
-
-    return _repeated(press, FORCE)
+    return _repeated(lambda force: results(model.press(JOINT, force=force)), FORCE)
 
 
 def _repeated(function: Callable[[float], object], value: float) -> Job:

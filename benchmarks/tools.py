@@ -41,9 +41,14 @@ class Bounce:
         return numpy.linspace(0.0, self.duration, self.samples)
 
     @property
+    def radius(self) -> float:
+        """Radius of the ball in m."""
+        return 1e-3 * self.element.constants.ball_radius
+
+    @property
     def turning(self) -> float:
         """The moment of inertia in kg m²: a solid ball."""
-        return 0.4 * (1e-3 * self.element.constants.ball_radius) ** 2
+        return 0.4 * self.radius**2
 
     @property
     def si(self) -> tuple[numpy.ndarray, numpy.ndarray]:
@@ -98,8 +103,7 @@ def mujoco_callback(bounce: Bounce, folder: Path) -> Path3:
     """The callback, in steps of 10 µs, in a model without the plug-in."""
     import mujoco as mj
 
-    radius = 1e-3 * bounce.element.constants.ball_radius
-    ball = f'<freejoint/><geom type="sphere" size="{radius!r}" mass="1" contype="0"/><site name="ball"/>'
+    ball = f'<freejoint/><geom type="sphere" size="{bounce.radius!r}" mass="1" contype="0"/><site name="ball"/>'
     model = mj.MjModel.from_xml_string(
         '<mujoco><option integrator="RK4" timestep="1e-5" gravity="0 0 -9.81"/><worldbody><site name="socket"/>'
         f"<body>{ball}</body></worldbody></mujoco>"
@@ -155,25 +159,15 @@ def c(bounce: Bounce, folder: Path) -> Path3:
 
 def drake(bounce: Bounce, folder: Path) -> Path3:
     """The LeafSystem, with Runge and Kutta's third order, accuracy 1e-10."""
-    from pydrake.multibody.plant import AddMultibodyPlantSceneGraph
     from pydrake.multibody.tree import SpatialInertia
-    from pydrake.systems.analysis import ResetIntegratorFromFlags, Simulator
-    from pydrake.systems.framework import DiagramBuilder
+    from pydrake.systems.analysis import ResetIntegratorFromFlags
 
-    builder = DiagramBuilder()
-    plant, _ = AddMultibodyPlantSceneGraph(builder, 0.0)
-    radius = 1e-3 * bounce.element.constants.ball_radius
-    body = plant.AddRigidBody("ball", SpatialInertia.SolidSphereWithMass(1.0, radius))
-    plant.mutable_gravity_field().set_gravity_vector([0.0, 0.0, -bounce.gravity])
-    plant.Finalize()
-    with module(folder, f"{NAME}_drake") as made:
-        made.add_joint(builder, plant, body)
-    simulator = Simulator(builder.Build())
+    ball = SpatialInertia.SolidSphereWithMass(1.0, bounce.radius)
+    simulator, plant, context = drake_simulator(folder, NAME, [ball], [((0,), {})], bounce.gravity)
     ResetIntegratorFromFlags(simulator, "runge_kutta3", 1e-4)
     integrator = simulator.get_mutable_integrator()
     integrator.set_target_accuracy(1e-10)
     integrator.set_maximum_step_size(2e-5)
-    context = plant.GetMyMutableContextFromRoot(simulator.get_mutable_context())
     position, velocity = bounce.si
     plant.SetPositions(context, [1.0, 0.0, 0.0, 0.0, *position])
     plant.SetVelocities(context, [0.0, 0.0, 0.0, *velocity])
@@ -182,6 +176,24 @@ def drake(bounce: Bounce, folder: Path) -> Path3:
         simulator.AdvanceTo(time)
         found.append(1e3 * plant.GetPositions(context)[4:])
     return numpy.array(found)
+
+
+def drake_simulator(folder: Path, name: str, inertias: Any, joints: Any, gravity: float = 0.0) -> tuple[Any, Any, Any]:
+    """Simulator, plant and context; a joint is the numbers of its one or two bodies and options of `add_joint`."""
+    from pydrake.multibody.plant import AddMultibodyPlantSceneGraph
+    from pydrake.systems.analysis import Simulator
+    from pydrake.systems.framework import DiagramBuilder
+
+    builder = DiagramBuilder()
+    plant, _ = AddMultibodyPlantSceneGraph(builder, 0.0)
+    bodies = [plant.AddRigidBody(f"body{number}", inertia) for number, inertia in enumerate(inertias)]
+    plant.mutable_gravity_field().set_gravity_vector([0.0, 0.0, -gravity])
+    plant.Finalize()
+    with module(folder, f"{name}_drake") as made:
+        for numbers, options in joints:
+            made.add_joint(builder, plant, *(bodies[number] for number in numbers), **options)
+    simulator = Simulator(builder.Build())
+    return simulator, plant, plant.GetMyMutableContextFromRoot(simulator.get_mutable_context())
 
 
 def exudyn(bounce: Bounce, folder: Path) -> Path3:
@@ -201,13 +213,12 @@ def _exudyn(bounce: Bounce, add: Callable[..., Any]) -> Path3:
     from exudyn import itemInterface as items  # noqa: N813 - a module's name
     from exudyn.utilities import InertiaSphere
 
-    system = exu.SystemContainer()
-    mbs = system.AddSystem()
+    mbs = exu.SystemContainer().AddSystem()
     ground = mbs.AddObject(items.ObjectGround())
     socket = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=ground, localPosition=[0.0, 0.0, 0.0]))
     position, velocity = bounce.si
     ball = mbs.CreateRigidBody(
-        inertia=InertiaSphere(1.0, 1e-3 * bounce.element.constants.ball_radius),
+        inertia=InertiaSphere(1.0, bounce.radius),
         nodeType=exu.NodeType.RotationRotationVector,
         referencePosition=[0.0, 0.0, 0.0],
         initialDisplacement=list(position),
@@ -219,24 +230,28 @@ def _exudyn(bounce: Bounce, add: Callable[..., Any]) -> Path3:
         items.SensorBody(bodyNumber=ball, storeInternal=True, outputVariableType=exu.OutputVariableType.Displacement)
     )
     mbs.Assemble()
-    settings = exu.SimulationSettings()
-    settings.timeIntegration.endTime = bounce.duration
-    settings.timeIntegration.discontinuous.maxIterations = 1  # what a contact with a state of its own asks for
-    settings.timeIntegration.discontinuous.ignoreMaxIterations = True
-    settings.solution.file.write = False
-    settings.solution.sensors.writePeriod = bounce.duration / (bounce.samples - 1)
-    settings.timeIntegration.automaticStepSize = False
-    settings.timeIntegration.numberOfSteps = 50 * (bounce.samples - 1)
+    settings = exudyn_settings(bounce.duration, 50 * (bounce.samples - 1), bounce.samples)
     mbs.SolveDynamic(settings, solverType=exu.DynamicSolverType.RK44)
     return 1e3 * mbs.GetSensorStoredData(place)[:, 1:4]
 
 
-def opensim(bounce: Bounce, folder: Path) -> Path3:
-    """The expression force, with Runge, Kutta and Merson's steps, accuracy 1e-10."""
-    import opensim as osim
+def exudyn_settings(duration: float, steps: int, samples: int = 2) -> Any:
+    """Equal steps, and times at which sensors are read."""
+    import exudyn as exu
 
-    osim.Logger.setLevelString("Error")
-    osim.Logger.removeFileSink()
+    settings = exu.SimulationSettings()
+    march = settings.timeIntegration
+    march.endTime, march.numberOfSteps, march.automaticStepSize, march.verboseMode = duration, steps, False, 0
+    march.discontinuous.maxIterations = 1  # what a contact with a state of its own asks for
+    march.discontinuous.ignoreMaxIterations = True
+    settings.solution.file.write = False
+    settings.solution.sensors.writePeriod = duration / (samples - 1)
+    return settings
+
+
+def opensim(bounce: Bounce, folder: Path) -> Path3:
+    """The expression force."""
+    osim = silent_opensim()
     model = osim.Model(str(folder / f"{NAME}.osim"))
     model.setGravity(osim.Vec3(0.0, 0.0, -bounce.gravity))
     state = model.initSystem()
@@ -244,16 +259,30 @@ def opensim(bounce: Bounce, folder: Path) -> Path3:
     for coordinate, place, speed in zip(coordinates, *bounce.si, strict=True):
         coordinate.setValue(state, float(place), False)
         coordinate.setSpeedValue(state, float(speed))
-    manager = osim.Manager(model)
-    manager.setIntegratorAccuracy(1e-10)
-    manager.setIntegratorMaximumStepSize(2e-5)
-    manager.setWriteToStorage(False)
-    manager.initialize(state)
+    manager = opensim_manager(model, state)
     found = [1e3 * bounce.si[0]]
     for time in bounce.times[1:]:
         state = manager.integrate(float(time))
         found.append(numpy.array([1e3 * coordinate.getValue(state) for coordinate in coordinates]))
     return numpy.array(found)
+
+
+def silent_opensim() -> Any:
+    import opensim
+
+    opensim.Logger.setLevelString("Error")
+    opensim.Logger.removeFileSink()  # no opensim.log in the working directory
+    return opensim
+
+
+def opensim_manager(model: Any, state: Any) -> Any:
+    """Runge, Kutta and Merson's steps, accuracy 1e-10."""
+    manager = silent_opensim().Manager(model)
+    manager.setIntegratorAccuracy(1e-10)
+    manager.setIntegratorMaximumStepSize(2e-5)
+    manager.setWriteToStorage(False)
+    manager.initialize(state)
+    return manager
 
 
 @contextmanager
