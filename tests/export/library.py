@@ -3,6 +3,7 @@
 import ctypes as c
 import sys
 import zipfile
+from importlib import import_module
 from importlib.util import find_spec, module_from_spec, spec_from_file_location
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -10,10 +11,14 @@ from xml.etree.ElementTree import fromstring
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
-from ballsocket.export import CElement
+from ballsocket.export import TARGETS, CElement, ExportJob
 from ballsocket.export.compiler import LIBRARY_ENDING, NoCompiler, shared_library
+from ballsocket.export.fmu import Fmu
 from ballsocket.export.tunable import tunables_of
+
+from ..places import ROOT
 
 
 def _compiles():
@@ -31,10 +36,26 @@ needs_compiler = pytest.mark.skipif(not _compiles(), reason="no C compiler")
 needs_scripts = pytest.mark.skipif(sys.platform == "win32", reason="Windows does not run scripts as programs")
 
 
-def skip_without(package):
+def skip_without(program):
     """Skip a test of a program that is not installed."""
-    if find_spec(package) is None:
-        pytest.skip(f"{package} is not installed")
+    if find_spec({"drake": "pydrake"}.get(program, program)) is None:
+        pytest.skip(f"{program} is not installed")
+
+
+def benchmark(name):
+    """Import a module of the benchmarks."""
+    with pytest.MonkeyPatch.context() as monkeypatch:
+        monkeypatch.syspath_prepend(str(ROOT))
+        return import_module(f"benchmarks.{name}")
+
+
+tools = benchmark("tools")
+"""The benchmark that runs one bounce in every program."""
+
+
+def written(target, element, folder, name="bouncing", depth=0.05, **options):
+    """Paths of the files of a target, and its note."""
+    return TARGETS[target].write(ExportJob(element=element, name=name, depth=depth, **options), folder)
 
 
 def set_compiler(monkeypatch, folder, lines):
@@ -106,9 +127,43 @@ class Library:
     def slope(self, *state_and_way):
         return self._call("slope", state_and_way, 9)
 
+    def complaint(self):
+        """Return a sentence on parameters that are not allowed."""
+        function = getattr(self.functions, f"{self.name}_complaint")
+        function.restype = c.c_char_p
+        return function(c.byref(self.parameters))
+
+    def check(self, element, *state, near=1e-12, near_contact=2e-9):
+        """Compare load, contact and tangent with an element, which may read the contact from curves within 1e-9."""
+        wanted = element(*(tuple(map(float, part)) for part in state))
+        status, *loads = self.load(*state)
+        assert status == wanted.status
+        pairs = [*zip(loads, (wanted.force, wanted.moment, wanted.energy), strict=True)]
+        for got, answer in (*pairs, (self.tangent(state[0])[1], np.ravel(wanted.tangent))):
+            assert_allclose(got, answer, rtol=near, atol=near * np.linalg.norm(answer))
+        _, half_angle, max_pressure = self.contact(state[0])
+        sizes = [wanted.half_angle], [wanted.max_pressure]
+        assert_allclose((half_angle, max_pressure), sizes, rtol=near_contact)
+        return status
+
 
 def _at(numbers):
     return numbers.ctypes.data_as(c.POINTER(c.c_double))
+
+
+def packed(path, name):
+    """Bytes of a file of an archive."""
+    with zipfile.ZipFile(path) as archive:
+        return archive.read(name)
+
+
+def description(path):
+    return fromstring(packed(path, "modelDescription.xml"))
+
+
+def hosted(folder, **unit):
+    """A host of a unit that is written into a folder."""
+    return Host(Fmu(**unit).write(folder / "unit.fmu").path, folder)
 
 
 LOG3 = c.CFUNCTYPE(None, c.c_void_p, c.c_int, c.c_char_p, c.c_char_p)
@@ -123,8 +178,8 @@ class Host:
     """An instance of a unit; `messages` are its log."""
 
     def __init__(self, path, folder):
+        about = description(path)
         with zipfile.ZipFile(path) as archive:
-            about = fromstring(archive.read("modelDescription.xml"))
             binary = next(name for name in archive.namelist() if name.startswith("binaries/"))
             self.functions = c.CDLL(archive.extract(binary, folder))
         self.version = int(about.get("fmiVersion")[0])
@@ -167,6 +222,15 @@ class Host:
         values = (c.c_double * len(names))()
         status = self._call("GetReal" if self.version == 2 else "GetFloat64", names, values)
         return status, list(values)
+
+    def difference(self, unknown, known, state, step):
+        """Return the central difference of one number with respect to another of a state, which it leaves set."""
+        ends = []
+        for by in (-step, step):
+            self.set(**{**state, known: state[known] + by})
+            ends.append(self.get(unknown)[1][0])
+        self.set(**state)
+        return (ends[1] - ends[0]) / (2 * step)
 
     def directional(self, unknown, known):
         """Return the status and the derivative of one number with respect to another."""

@@ -1,14 +1,13 @@
 """Benchmark problems of spherical joints with clearance: references, and errors of programs."""
 
-from importlib import import_module
 from math import radians
 
 import numpy as np
 import pytest
 
-from ..places import ROOT
-from .library import needs_compiler
+from .library import benchmark, needs_compiler
 
+problems = benchmark("clearance_problems")
 NUMBERS = {
     0.0: {
         "largest indentation, mm": 0.0184788982741769137,
@@ -25,15 +24,8 @@ NUMBERS = {
 """Integrals of the energy over the indentation with 40 digits."""
 
 
-@pytest.fixture(scope="module")
-def problems():
-    with pytest.MonkeyPatch.context() as monkeypatch:
-        monkeypatch.syspath_prepend(str(ROOT))
-        return import_module("benchmarks.clearance_problems")
-
-
 @pytest.mark.parametrize("angle", NUMBERS)
-def test_numbers_of_an_impact_are_those_of_the_energy_integral(angle, problems):
+def test_numbers_of_an_impact_are_those_of_the_energy_integral(angle):
     found = problems.radial_impact(angle)
     assert {name: found[name] for name in NUMBERS[angle]} == pytest.approx(NUMBERS[angle], rel=1e-8)
 
@@ -41,7 +33,7 @@ def test_numbers_of_an_impact_are_those_of_the_energy_integral(angle, problems):
 @pytest.mark.long
 @needs_compiler
 @pytest.mark.parametrize("name", ["a_radial_bounce", "b_oblique_bounce"])
-def test_two_programs_solve_an_impact_within_a_millionth(name, problems, tmp_path):
+def test_two_programs_solve_an_impact_within_a_millionth(name, tmp_path):
     """The positions of the reference have the deepest point and the angle of the integrals."""
     errors = {program: error for (_, program), (error, _) in problems.write(tmp_path, (name,)).items()}
     assert len(errors) >= 2
@@ -65,6 +57,6 @@ def test_two_programs_solve_an_impact_within_a_millionth(name, problems, tmp_pat
 @pytest.mark.long
 @needs_compiler
 @pytest.mark.parametrize("name", ["c_pendulum", "d_four_bar", "e_wheel_in_a_pipe"])
-def test_an_exported_joint_solves_a_mechanism_within_a_millionth(name, problems, tmp_path):
+def test_an_exported_joint_solves_a_mechanism_within_a_millionth(name, tmp_path):
     results = problems.write(tmp_path, (name,))
     assert results[name, "c"][0] < 1e-6

@@ -4,7 +4,6 @@ import os
 import re
 import subprocess
 import sys
-from importlib import import_module
 from runpy import run_path
 from types import SimpleNamespace
 
@@ -17,12 +16,11 @@ from ballsocket.export.compiler import compiler
 from ..cli.command import printed, run
 from ..places import EXAMPLES, ROOT
 from ..processes import PATIENCE
-from .library import needs_compiler, skip_without
+from .library import benchmark, needs_compiler, skip_without
 
 PAGE = (ROOT / "docs" / "how-to" / "export.md").read_text(encoding="utf-8")
 PROGRAMS = dict(re.findall(r"```\{code-block\} python\n# (\w+)(.*?)```", PAGE, re.DOTALL))
-PACKAGES = {"FMU": "fmpy", "MuJoCo": "mujoco", "Drake": "pydrake", "Exudyn": "exudyn", "OpenSim": "opensim"}
-PACKAGES["Warp"] = "newton"
+PACKAGES = {"FMU": "fmpy", "Warp": "newton"} | {host: host.lower() for host in ("MuJoCo", "Drake", "Exudyn", "OpenSim")}
 
 
 @needs_compiler
@@ -74,10 +72,9 @@ def test_energy_loss_of_the_mechanism_equals_the_dissipation_of_its_joint(bar):
 @pytest.mark.long
 @needs_compiler
 @pytest.mark.parametrize("name", ["law", "sphere"])
-def test_exudyn_reproduces_the_stored_motion_and_that_of_the_element(name, bar, monkeypatch):
+def test_exudyn_reproduces_the_stored_motion_and_that_of_the_element(name, bar):
     skip_without("exudyn")
-    monkeypatch.syspath_prepend(str(ROOT))
-    found = import_module("benchmarks.four_bar").in_exudyn(name, 0.05, 2e-5, 11)
+    found = benchmark("four_bar").in_exudyn(name, 0.05, 2e-5, 11)
     kept = np.genfromtxt(EXAMPLES / "four_bar_in_exudyn.csv", delimiter=",", names=True)[:11]
     assert_allclose(found.time, kept["time_s"])
     assert_allclose(found.angle, kept[f"{name}_angle_rad"], atol=3e-5)

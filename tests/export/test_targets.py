@@ -4,7 +4,6 @@ import ctypes
 import re
 import sys
 from dataclasses import replace
-from importlib import import_module
 from math import exp, pi, sqrt
 from pathlib import Path
 from xml.etree.ElementTree import fromstring
@@ -24,8 +23,18 @@ from ballsocket.files.tables import read_table
 
 from ..cli.command import printed, run
 from ..joints import HIP
-from ..places import EXAMPLES, ROOT
-from .library import needs_compiler, needs_scripts, python_header, set_compiler, skip_without, table, writes
+from ..places import EXAMPLES
+from .library import (
+    needs_compiler,
+    needs_scripts,
+    python_header,
+    set_compiler,
+    skip_without,
+    table,
+    tools,
+    writes,
+    written,
+)
 
 PLAIN = ForceElement(bs.HessForsbach(), HIP)
 DAMPED = ForceElement(bs.HessForsbach(), HIP, damping=Damping(hysteresis=0.004))
@@ -35,10 +44,6 @@ LOSSES = {"damping": DAMPED.damping, "friction": Friction(coefficient=0.05)}
 LOSSY = ForceElement(bs.HessForsbach(), HIP, lubricant=bs.Lubricant(viscosity=1e-5), **LOSSES)
 STATE = (1e-5, 0.0, 1.2e-4), (0.001, 0.0, 0.02), (0.0, 1.0, 2.0)
 IN_MM = (0.01, 0.0, 0.12), (1.0, 0.0, 20.0), (0.0, 1.0, 2.0)
-
-
-def written(target, element, folder, name="bouncing", depth=0.05):
-    return TARGETS[target].write(ExportJob(element=element, name=name, depth=depth), folder)
 
 
 def texts(target, element=DAMPED):
@@ -56,21 +61,13 @@ def check_loads(force, moment, *contact):
 
 
 @pytest.fixture(scope="module")
-def tools():
-    """The benchmark that runs one bounce in every program."""
-    with pytest.MonkeyPatch.context() as monkeypatch:
-        monkeypatch.syspath_prepend(str(ROOT))
-        return import_module("benchmarks.tools")
-
-
-@pytest.fixture(scope="module")
 def fit():
     """The expression of a law that no closed form has."""
     return expression_fit(TABULATED, 0.05)
 
 
 @needs_compiler
-def test_the_python_module_has_the_loads_of_the_element_and_needs_no_package(tools, tmp_path):
+def test_the_python_module_has_the_loads_of_the_element_and_needs_no_package(tmp_path):
     assert written("exudyn", LOSSY, tmp_path)[1] == ""
     assert "import ballsocket" not in (tmp_path / "bouncing.py").read_text()
     with tools.module(tmp_path, "bouncing") as joint:
@@ -423,9 +420,9 @@ def test_elements_with_a_state_are_refused_by_programs_that_cannot_represent_it(
 @pytest.mark.long
 @needs_compiler
 @pytest.mark.parametrize("program", ["mujoco", "mujoco_callback", "drake", "exudyn", "opensim", "warp"])
-def test_a_ball_bounces_in_each_program_as_in_python(program, tools, tmp_path):
+def test_a_ball_bounces_in_each_program_as_in_python(program, tmp_path):
     target = program.removesuffix("_callback")
-    skip_without({"drake": "pydrake"}.get(target, target))
+    skip_without(target)
     element = DAMPED if target == "opensim" else LOSSY
     bounce = tools.Bounce(element=element, duration=0.005, samples=51)
     assert (written(target, element, tmp_path)[1] == "") == (target != "opensim")

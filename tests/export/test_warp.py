@@ -10,18 +10,12 @@ from numpy.testing import assert_allclose
 
 import ballsocket as bs
 from ballsocket.dynamics import Damping, ForceElement, Friction
-from ballsocket.export import TARGETS, ExportJob
 
 from ..joints import HIP
-from .library import load_module, needs_compiler, skip_without
+from .library import load_module, needs_compiler, skip_without, written
 
 LOSSY = ForceElement(bs.HessForsbach(), HIP, Damping(hysteresis=0.004), Friction(coefficient=0.05), cup=bs.Cup())
 SMOOTH = ForceElement(bs.Tabulated(), HIP)
-
-
-def written(element, folder, **options):
-    TARGETS["warp"].write(ExportJob(element=element, name="hip", depth=0.05, **options), folder)
-    return folder
 
 
 def states(count=300):
@@ -64,7 +58,8 @@ def stand_in():
 def test_the_formulas_of_the_module_are_those_of_the_element(element, tmp_path, monkeypatch):
     """The curve of the energy is within 1e-9 of the law."""
     monkeypatch.setitem(sys.modules, "warp", stand_in())
-    module = load_module(written(element, tmp_path), "hip_warp")
+    written("warp", element, tmp_path, name="hip")
+    module = load_module(tmp_path, "hip_warp")
     laws = module.laws(float)
     positions, velocities, spins = states(100)
     load, table = element(positions, velocities, spins), laws.table_on()
@@ -80,7 +75,9 @@ def test_the_formulas_of_the_module_are_those_of_the_element(element, tmp_path, 
 @pytest.fixture(scope="module")
 def lossy(tmp_path_factory):
     skip_without("warp")
-    return load_module(written(LOSSY, tmp_path_factory.mktemp("warp")), "hip_warp")
+    folder = tmp_path_factory.mktemp("warp")
+    written("warp", LOSSY, folder, name="hip")
+    return load_module(folder, "hip_warp")
 
 
 @pytest.mark.long
@@ -180,7 +177,7 @@ def test_forces_on_ball_and_socket_are_opposite_and_leave_the_angular_momentum(l
 @needs_compiler
 def test_the_callback_of_mujoco_warp_has_the_passive_forces_of_mujoco(lossy, tmp_path, monkeypatch):
     mujoco, mjw = pytest.importorskip("mujoco"), pytest.importorskip("mujoco_warp")
-    TARGETS["mujoco"].write(ExportJob(element=LOSSY, name="beside_warp", depth=0.05), tmp_path)
+    written("mujoco", LOSSY, tmp_path, name="beside_warp")
     cup = '<geom size=".03" mass="2" contype="0"/><site name="socket" pos=".01 0 .002"/>'
     ball = '<geom size=".0179" mass="1" contype="0"/><site name="ball"/>'
     bodies = f'<body euler="10 20 30"><freejoint/>{cup}</body><body><freejoint/>{ball}</body>'
