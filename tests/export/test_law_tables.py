@@ -10,15 +10,17 @@ from numpy.testing import assert_allclose
 
 import ballsocket as bs
 from ballsocket.dynamics import ContactState, ForceElement, Friction
-from ballsocket.export import TARGETS, ExportJob
 from ballsocket.export.compiler import LIBRARY_ENDING, shared_library
 
 from ..cli.command import printed, run
 from ..joints import HIP
 from ..places import EXAMPLES
-from .library import load_module, needs_compiler, table
+from .library import load_module, needs_compiler, table, written
 
 PIVOT = bs.joints["tilting-pad-pivot"]
+ROUGH = ForceElement(bs.HessForsbach(), HIP, friction=Friction(coefficient=0.05))
+STATE = (0.03, 0.0, 0.12), (1.0, 0.0, 20.0), (0.0, 1.0, 2.0)
+LOAD = ROUGH(*STATE)
 
 
 @pytest.fixture(scope="module")
@@ -112,19 +114,16 @@ void call(double *result)
 @needs_compiler
 def test_the_user_subroutine_of_adams_has_the_loads_of_the_element(tmp_path):
     """A solver of a few lines calls it through the published interface."""
-    element = ForceElement(bs.HessForsbach(), HIP, friction=Friction(coefficient=0.05))
-    TARGETS["adams"].write(ExportJob(element=element, name="hip", depth=0.05), tmp_path)
+    written("adams", ROUGH, tmp_path, name="hip")
     (tmp_path / "slv_c_utils.h").write_text(HEADER)
     (tmp_path / "solver.c").write_text(SOLVER)
     strict = ("-Wall", "-Wextra", "-Werror", "-I.")
     path = shared_library(["hip.c", "hip_adams.c", "solver.c"], tmp_path / f"all{LIBRARY_ENDING}", tmp_path, strict)
     solver, result = ctypes.CDLL(str(path)), (ctypes.c_double * 6)()
-    state = (0.03, 0.0, 0.12), (1.0, 0.0, 20.0), (0.0, 1.0, 2.0)
     motion = (ctypes.c_double * 9).in_dll(solver, "motion")
-    motion[:] = [part for vector in state for part in vector]
+    motion[:] = np.ravel(STATE)
     solver.call(result)
-    load = element(*state)
-    assert_allclose(result, [*load.force, *load.moment], rtol=1e-12, atol=1e-9)
+    assert_allclose(result, [*LOAD.force, *LOAD.moment], rtol=1e-12, atol=1e-9)
     assert ctypes.c_int.in_dll(solver, "stopped").value == 0
     motion[0] = np.nan
     solver.call(result)
@@ -162,11 +161,11 @@ void spck_av_wxyz_(double *w, double *out, int *to, int *from, int *ref, int *er
 {
     *error = seen(out, 6, to, from, ref);
 }
-void uforce20_type_(int *, char *, int *, size_t);
 typedef int *I;
 typedef double *D;
 typedef char *C;
 typedef size_t Length;
+void uforce20_type_(I, C, I, Length);
 void uforce20_setup_(I, I, I, I, I, I, I, I, D, I, C, I, C, I, C, I, I, I, I, I, I, Length, Length, Length);
 void uforce20_(I, I, I, I, I, I, I, D, I, I, D, D, D, I, D, D, D, D, D, I);
 int call(void)
@@ -190,8 +189,7 @@ int call(void)
 @pytest.mark.skipif(which("gfortran") is None, reason="gfortran is not installed")
 def test_the_user_subroutine_of_simpack_has_the_loads_of_the_element(tmp_path):
     """A harness in C calls it as Simpack does: force and torque act on the socket, in the axes of its marker."""
-    element = ForceElement(bs.HessForsbach(), HIP, friction=Friction(coefficient=0.05))
-    TARGETS["simpack"].write(ExportJob(element=element, name="hip", depth=0.05), tmp_path)
+    written("simpack", ROUGH, tmp_path, name="hip")
     (tmp_path / "simpack.f90").write_text(SIMPACK)
     (tmp_path / "harness.c").write_text(FORCES)
     sources = "hip.c", "harness.c", "simpack.f90", "hip_simpack.f90"
@@ -202,13 +200,11 @@ def test_the_user_subroutine_of_simpack_has_the_loads_of_the_element(tmp_path):
     def numbers(name, count, kind=ctypes.c_double):
         return (kind * count).in_dll(solver, name)
 
-    state = (0.03, 0.0, 0.12), (1.0, 0.0, 20.0), (0.0, 1.0, 2.0)
-    numbers("motion", 9)[:] = np.ravel(np.array(state) * [[1e-3], [1e-3], [1.0]])
+    numbers("motion", 9)[:] = np.ravel(np.array(STATE) * [[1e-3], [1e-3], [1.0]])
     assert solver.call() == 0
-    load = element(*state)
-    assert_allclose(numbers("force", 3), -np.array(load.force), rtol=1e-12, atol=1e-9)
-    assert_allclose(numbers("torque", 3), -1e-3 * np.array(load.moment), rtol=1e-12, atol=1e-12)
-    assert_allclose(numbers("ov", 3), (load.half_angle, 1e6 * load.max_pressure, ContactState.CONTACT), rtol=1e-12)
+    assert_allclose(numbers("force", 3), -np.array(LOAD.force), rtol=1e-12, atol=1e-9)
+    assert_allclose(numbers("torque", 3), -1e-3 * np.array(LOAD.moment), rtol=1e-12, atol=1e-12)
+    assert_allclose(numbers("ov", 3), (LOAD.half_angle, 1e6 * LOAD.max_pressure, ContactState.CONTACT), rtol=1e-12)
     assert list(numbers("sizes", 5, ctypes.c_int)) == [1, 0, 0, 3, 5]  # a force, three outputs, in the marker's axes
     assert list(numbers("kinds", 2, ctypes.c_int)) == [3, 4]
     numbers("motion", 9)[0] = np.nan
