@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from math import inf, prod
+from math import inf, nan, prod
 from types import SimpleNamespace
 from typing import Any, ClassVar
 
@@ -189,8 +189,12 @@ class SolvedContact(Contact):
 
     @cached_property
     def error(self) -> dict[str, Array]:
-        """Estimated relative errors, one array for each quantity name; that of a solved stress is measured."""
-        errors = {name: self._match_load(error) for name, error in self.laws.error.items()}
+        """Estimated relative errors, one array for each quantity name; that of a solved stress is measured.
+
+        A point without an answer has NaN.
+        """
+        failed, errors = self._failed, self.laws.error
+        errors = {name: self._match_load(arrays.where(failed, nan, error)) for name, error in errors.items()}
         if self.stress_error is not None:
             errors["von_mises"] = (1 + self.stress_error) * (1 + errors["max_pressure"]) - 1
         return errors

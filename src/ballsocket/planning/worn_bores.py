@@ -216,9 +216,8 @@ def measure_wear(cloud: PointCloud, *, head_radius: float | None = None) -> Worn
                 f"head_diameter = {2 * head_radius:.6g} mm is not allowed: the bore of {name} has a diameter of "
                 f"{2 * unworn.radius:.6g} ± {2 * unworn.radius_error:.2g} mm; check the head and --stl-units"
             )
-        gap = Amount(2 * (unworn.radius - head_radius), MILLIMETRES, 2)
-        text = "{}: the head, with a diameter of {} less than the bore, changes no number"
-        head_note = Sentence(text, name, gap)
+        head, bore = (Amount(2 * radius, MILLIMETRES, 6) for radius in (head_radius, unworn.radius))
+        head_note = Sentence("{}: the head, of {} in a bore of {}, changes no number", name, head, bore)
     if len(bores) == 1:
         shifted = _add_hidden_shift(unworn, local, spheres[0])
         excludes = head_radius is not None and unworn.radius - head_radius > unworn.radius_error
