@@ -60,7 +60,8 @@ function table({ heads, rows, style }) {
   const headOf = (head) => (head ? cell("th", head, { scope: "col" }) : element("td"));
   const top = element("tr", {}, ...heads.map(headOf));
   const lines = rows.map((row) => tableRow(row, heads.length));
-  const region = { class: `wide ${style}`, tabindex: "0", role: "region", "aria-label": style || "table" };
+  const words = heads.flatMap((head) => (Array.isArray(head) ? head[0] : head) || []).join(", "); // of this table alone
+  const region = { class: `wide ${style}`, tabindex: "0", role: "region", "aria-label": words || "table" };
   return element("div", region, element("table", {}, top, ...lines));
 }
 const makers = { sentence, items, numbers, checks, table, charts, section, scale };

@@ -75,10 +75,10 @@ function receive(text) {
   if (open) delete page.dataset.lost;
   if (message.pong) return;
   if (message.fresh) question = -1;
+  if (message.question < question) return; // its changes are not those of the values here
+  question = message.question;
   for (const [name, changes] of Object.entries(message.changes ?? {})) message[name] = changed(latest[name], changes);
   Object.assign(latest, message);
-  if (message.question < question) return;
-  question = message.question;
   const answered = current && message.n === current.n ? current : null;
   if (answered) finish(answered);
   for (const handler of handlers) handler(message, answered);
