@@ -302,7 +302,7 @@ def deck(
     from ..elasticity.finite_elements.deck import deck_of
 
     made = deck_of(contact, steps=steps, scale=scale)
-    echo_path(made.write(out), f": {contact.mesh.elements} elements, {steps} steps")
+    echo_path(made.write(out), f": {made.element_count} elements, {steps} steps")
     if run:
         print_answer(describe_rival(made.expected, run_ccx(out)))
 

@@ -122,6 +122,11 @@ class Deck(InputDeck):
     def _bodies(self) -> DeckBodies:
         return DeckBodies(contact=self.contact, scale=self.scale)
 
+    @property
+    def element_count(self) -> int:
+        """Number of elements of both bodies."""
+        return sum(body.block.elements.shape[1] for body in (self._bodies.socket, self._bodies.ball))
+
     # --- expected results ---
 
     @cached_property
@@ -130,10 +135,12 @@ class Deck(InputDeck):
         model, joint, names = self.contact.model, self._bodies.joint, ["force", "max_pressure", "pole_pressure"]
         if self.contact.yields:
             names.append("permanent_set")
-            contact = model.follow(replace(joint, liner=self.contact.joint.liner), indentation=self._indentations)
-        else:
-            contact = model.press(joint, indentation=self._indentations)
+            joint = replace(joint, liner=self.contact.joint.liner)
+        contact = model.press(joint, indentation=self._indentations)  # each on its own mesh, unlike by `follow`
         results = {name: getattr(contact, name) for name in names}
+        if self.contact.yields:
+            left = results["permanent_set"]
+            results["permanent_set"] = numpy.append(left[:-1], left[-2])  # the last step unloads
         return {"indentation": self._indentations, **results, "half_angle_deg": numpy.degrees(contact.half_angle)}
 
     @property

@@ -13,7 +13,7 @@ from ...core.arrays import Numbers
 from ...problem import Joint
 from .bodies import SurfacePair, ball_body, socket_body
 from .load_search import Solved
-from .mesh import Block, mesh_block, socket_shape
+from .mesh import Block, Resolution, mesh_block, socket_shape
 from .model import MeshedContact
 
 _RING_THICKNESS = 0.05  # meshed part of a rigid ball, over its radius
@@ -73,14 +73,19 @@ class DeckBody:
         columns = self.block.sliding
         return self.block.number[:, columns].ravel(), self.block.number[:, columns + 1].ravel()
 
+    @property
+    def corners(self) -> Numbers:
+        """Angles (rad) of the elements' corners."""
+        return self.block.angle[:: self.block.order]
+
     def surface(self) -> dict[str, list[Any]]:
         """Return the deck's numbers and angles (rad) of the contact nodes, from the pole outwards."""
         return {"node": self.number[self.contact].tolist(), "angle": self.block.angle[: len(self.contact)].tolist()}
 
     def contact_elements(self, reach: float, *, strip: int, extra: int = 0) -> Numbers:
         """Return the deck's numbers of the elements of a strip up to an angle (rad), and of a few extra ones."""
-        corners, strips = self.block.angle[:: self.block.order], len(self.block.strips)
-        count = min(int(numpy.searchsorted(corners, reach - _ANGLE_TOLERANCE)) + extra, len(corners) - 1)
+        strips = len(self.block.strips)
+        count = min(int(numpy.searchsorted(self.corners, reach - _ANGLE_TOLERANCE)) + extra, len(self.corners) - 1)
         return self.elements_before + 1 + numpy.arange(count) * strips + strip % strips
 
     def node_lines(self) -> Iterator[str]:
@@ -116,9 +121,17 @@ class DeckBodies:
         return self.contact._plain_joint
 
     @cached_property
+    def resolutions(self) -> tuple[Resolution, Resolution]:
+        """Element sizes of socket and ball: those of an elastic contact, half as long as those of a yielding one."""
+        pair = self.solved.pair
+        if self.contact.yields:
+            return pair.resolution.halved(), pair.ball_resolution.halved()
+        return pair.resolution, pair.ball_resolution
+
+    @cached_property
     def socket(self) -> DeckBody:
         """Body of the socket: liner and backing."""
-        body = socket_body(socket_shape(self.joint, self.contact.model.cup), self.solved.pair.resolution)
+        body = socket_body(socket_shape(self.joint, self.contact.model.cup), self.resolutions[0])
         return DeckBody(
             names=("LINER", *(f"BACKING{number}" for number in range(1, len(self.joint.backing) + 1))),
             block=body.elastic.block,
@@ -132,13 +145,13 @@ class DeckBodies:
         """Body of the ball at first contact; its radius is R2 minus the scaled clearance."""
         if self.joint.ball is None:
             # one fixed layer of elements, which match the bore's and extend one element further
-            corners = self.solved.pair.angle
+            corners = self.socket.corners[self.socket.corners <= self.reach + _ANGLE_TOLERANCE]
             corners = numpy.append(corners, 2 * corners[-1] - corners[-2])
             radii = numpy.array([1 - _RING_THICKNESS, 1.0])
-            mesh = mesh_block(corners, [radii], self.solved.pair.resolution.order)
+            mesh = mesh_block(corners, [radii], self.resolutions[0].order)
             fixed_directions, contact = numpy.ones((2, mesh.number.size), dtype=bool), mesh.number[:, -1]
         else:
-            body = ball_body(float(self.joint.ball.poisson), self.solved.pair.ball_resolution)
+            body = ball_body(float(self.joint.ball.poisson), self.resolutions[1])
             mesh, fixed_directions, contact = body.elastic.block, body.fixed_unknowns.reshape(-1, 2).T, body.contact
         clearance = self.scale * float(self.joint.clearance)
         return DeckBody(
