@@ -2,7 +2,7 @@
 
 import ctypes
 import subprocess
-from shutil import which
+from shutil import copytree, which
 
 import numpy as np
 import pytest
@@ -14,7 +14,7 @@ from ballsocket.export.compiler import LIBRARY_ENDING, shared_library
 
 from ..cli.command import printed, run
 from ..joints import HIP
-from ..places import EXAMPLES
+from ..places import DATA, EXAMPLES
 from .library import load_module, needs_compiler, table, written
 
 PIVOT = bs.joints["tilting-pad-pivot"]
@@ -80,43 +80,11 @@ def test_a_table_has_both_signs_along_a_tilted_load_and_across_it(tmp_path):
     assert rows["force_N_across"][200] == 0.0
 
 
-HEADER = """
-struct sAdamsGforce { int ID; int NPAR; const double *PAR; int I; int RM; int JFLOAT; };
-typedef void adams_c_Gfosub(const struct sAdamsGforce *, double, int, int, double *);
-void c_sysary(const char *name, const int *markers, int size, double *values, int *count, int *error);
-void c_errmes(int error, const char *text, int id, const char *action);
-"""
-SOLVER = """
-#include <string.h>
-#include "slv_c_utils.h"
-double motion[9]; int stopped = 0;
-void c_sysary(const char *name, const int *markers, int size, double *values, int *count, int *error)
-{
-    const int speed = strcmp(name, "TVEL") == 0, spin = strcmp(name, "RVEL") == 0;
-    *error = markers[0] != 11 || markers[1] != 20 || markers[2] != 20 || size != 3 + speed;
-    memcpy(values, motion + 3 * speed + 6 * spin, 3 * sizeof(double));
-    *count = 3;
-}
-void c_errmes(int error, const char *text, int id, const char *action)
-{
-    (void)text, (void)id;
-    stopped |= error && strcmp(action, "STOP") == 0;
-}
-adams_c_Gfosub Hip_gforce;
-void call(double *result)
-{
-    const struct sAdamsGforce gforce = {1, 0, 0, 11, 20, 21};
-    Hip_gforce(&gforce, 0.0, 0, 0, result);
-}
-"""
-
-
 @needs_compiler
 def test_the_user_subroutine_of_adams_has_the_loads_of_the_element(tmp_path):
     """A solver of a few lines calls it through the published interface."""
     written("adams", ROUGH, tmp_path, name="hip")
-    (tmp_path / "slv_c_utils.h").write_text(HEADER)
-    (tmp_path / "solver.c").write_text(SOLVER)
+    copytree(DATA / "adams", tmp_path, dirs_exist_ok=True)
     strict = ("-Wall", "-Wextra", "-Werror", "-I.")
     path = shared_library(["hip.c", "hip_adams.c", "solver.c"], tmp_path / f"all{LIBRARY_ENDING}", tmp_path, strict)
     solver, result = ctypes.CDLL(str(path)), (ctypes.c_double * 6)()
@@ -130,68 +98,11 @@ def test_the_user_subroutine_of_adams_has_the_loads_of_the_element(tmp_path):
     assert ctypes.c_int.in_dll(solver, "stopped").value == 1
 
 
-SIMPACK = """
-module simpack
-    integer, parameter :: fclass_force = 1, knodef = 2, kforce_res_force_torque = 3, kforce_strst_none = 4
-    integer, parameter :: kref_marker = 5
-end module
-"""
-FORCES = """
-#include <string.h>
-double motion[9], force[3], torque[3], ov[3]; int sizes[5], kinds[2], refused = 0;
-void spck_df_fclass_(const int *kind, int *error) { sizes[0] = *kind, *error = 0; }
-void spck_df_forcepardim_(const int *size, int *error) { sizes[1] = *size, *error = 0; }
-void spck_df_forcestdyndim_(const int *size, int *error) { sizes[2] = *size, *error = 0; }
-void spck_df_forceovdim_(const int *size, int *error) { sizes[3] = *size, *error = 0; }
-void spck_df_forcerefsys_(const int *system, int *error) { sizes[4] = *system, *error = 0; }
-static int seen(double *out, int first, const int *to, const int *from, const int *reference)
-{
-    memcpy(out, motion + first, 3 * sizeof(double));
-    return refused || *to != 22 || *from != 11 || *reference != 11;
-}
-void spck_av_dxyz_(double *d, double *out, int *to, int *from, int *ref, int *error)
-{
-    *error = seen(out, 0, to, from, ref);
-}
-void spck_av_vxyz_(double *v, double *rate, double *out, int *to, int *from, int *by, int *ref, int *error)
-{
-    *error = seen(out, 3, to, from, ref) || *by != 11;
-}
-void spck_av_wxyz_(double *w, double *out, int *to, int *from, int *ref, int *error)
-{
-    *error = seen(out, 6, to, from, ref);
-}
-typedef int *I;
-typedef double *D;
-typedef char *C;
-typedef size_t Length;
-void uforce20_type_(I, C, I, Length);
-void uforce20_setup_(I, I, I, I, I, I, I, I, D, I, C, I, C, I, C, I, I, I, I, I, I, Length, Length, Length);
-void uforce20_(I, I, I, I, I, I, I, D, I, I, D, D, D, I, D, D, D, D, D, I);
-int call(void)
-{
-    static char name[30], names[90];
-    int length = 30, none = 0, outputs = 3, id = 1, from = 11, to = 22, error = 0, task, units[3], unused;
-    double time = 0.0, nothing[1];
-    uforce20_type_(&length, name, &error, 30);
-    for (task = 0; task < 2 && !error; task++)
-        uforce20_setup_(&task, &none, &none, &outputs, &length, &id, &from, &to, nothing, &unused, name, &unused, name,
-                        &unused, names, units, &kinds[0], &unused, &unused, &kinds[1], &error, 30, 30, 30);
-    task = 0;
-    if (!error && !memcmp(names + 30, "largest pressure, Pa", 20))
-        uforce20_(&task, &none, &none, &none, &none, &outputs, &id, nothing, &from, &to, &time, nothing, nothing,
-                  &unused, nothing, force, torque, ov, nothing, &error);
-    return error;
-}
-"""
-
-
 @pytest.mark.skipif(which("gfortran") is None, reason="gfortran is not installed")
 def test_the_user_subroutine_of_simpack_has_the_loads_of_the_element(tmp_path):
     """A harness in C calls it as Simpack does: force and torque act on the socket, in the axes of its marker."""
     written("simpack", ROUGH, tmp_path, name="hip")
-    (tmp_path / "simpack.f90").write_text(SIMPACK)
-    (tmp_path / "harness.c").write_text(FORCES)
+    copytree(DATA / "simpack", tmp_path, dirs_exist_ok=True)
     sources = "hip.c", "harness.c", "simpack.f90", "hip_simpack.f90"
     library = tmp_path / f"all{LIBRARY_ENDING}"
     subprocess.run(["gfortran", "-Wall", "-shared", "-fPIC", *sources, "-o", library], cwd=tmp_path, check=True)

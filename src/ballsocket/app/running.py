@@ -18,7 +18,7 @@ from ..core.validity import OutsideDomainError
 MAX_SECONDS = 60.0  # processor time of a run in s
 MAX_WAITING_SECONDS = 600.0  # longer than its processor time that a run may take: on a busy machine it waits
 MAX_MEMORY = 4_000_000_000  # bytes that its process may ask for
-MAX_KEPT_MEMORY = 1_000_000_000  # bytes of a process that waits for the next run
+MAX_KEPT_MEMORY = 2_000_000_000  # bytes that a process which waits for the next run has asked for
 Report = Callable[[Any], None]  # callback for intermediate results, as plain values
 Work = Callable[[Report], Any]  # function that a process runs; it, its result and its reports must be picklable
 
@@ -66,7 +66,7 @@ class Workers:
 
     def give_back(self, process: Any, pipe: Connection) -> None:
         """Let a process that has finished its run wait for the next, unless one waits already or it has grown large."""
-        if self._ready is None and resident_memory(process.pid) < MAX_KEPT_MEMORY:
+        if self._ready is None and reserved_memory(process.pid) < MAX_KEPT_MEMORY:
             self._ready = process, pipe
         else:
             end(process, pipe)
@@ -169,12 +169,12 @@ def processor_seconds(pid: int) -> float:
     return total
 
 
-def resident_memory(pid: int) -> int:
-    """Memory in bytes that a process holds; 0 for a process that has ended."""
+def reserved_memory(pid: int) -> int:
+    """Memory in bytes that a process has asked for, in use or not; 0 for a process that has ended."""
     import psutil
 
     with suppress(psutil.Error):
-        return psutil.Process(pid).memory_info().rss
+        return psutil.Process(pid).memory_info().vms
     return 0
 
 

@@ -170,6 +170,8 @@ def test_first_yield_has_a_load_and_a_thickness():
     assert model.minimum_thickness(joint, 100.0) == 0.0
     assert model.minimum_thickness(joint, 1e5) == np.inf
     assert np.isnan(elastic.minimum_thickness)
+    tight = bs.Joint(ball_radius=14.0, interference=0.05, liner_thickness=5.0, liner=joint.liner)  # outside the domain
+    assert np.isnan([model.yield_load(tight), model.shakedown_load(tight), model.collapse_load(tight)]).all()
     lengths = {"ball_radius": joint.ball_radius, "clearance": joint.clearance, "outer_radius": joint.outer_radius}
     sized = bs.Joint(**lengths, liner=joint.liner, ball=joint.ball, backing=joint.backing)
     assert model.minimum_thickness(sized, 5000.0) == pytest.approx(thickness, rel=2e-3)

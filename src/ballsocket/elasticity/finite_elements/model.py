@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache, partial
-from math import degrees, inf, nan, prod
+from math import degrees, inf, isnan, nan, prod
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -410,8 +410,10 @@ class FiniteElement(Model):
         return self._largest_force(joint, lambda contact: not contact.status.failed and _SHAKEDOWN.holds(contact))
 
     def _largest_force(self, joint: Joint, bears: Callable[[Any], bool]) -> float:
-        """Bisect below the collapse load for the largest force in N that a socket bears."""
+        """Bisect below the collapse load for the largest force in N that a socket bears; NaN outside the domain."""
         model, collapse = replace(self, meshes=1, plastic=True), self.collapse_load(joint)
+        if isnan(collapse):
+            return nan
         return bisect(0.0, collapse, lambda force: bears(model.press(joint, force=force)), tolerance=_TOLERANCE)
 
     def minimum_thickness(self, joint: Joint, force: float) -> float:

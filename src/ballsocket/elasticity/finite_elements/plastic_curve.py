@@ -119,7 +119,7 @@ class PlasticLoadCurve:
         """Find the largest force in N of all indentations up to the radius, from its tangent, within 0.1 %.
 
         It does not depend on increments. In a cup of more than 180 degrees the contact may end at the last pressure
-        node, beyond which a pressure adds 0.1 % of force.
+        node; pressure beyond it would add 0.1 % of force.
         """
         path, forces = self._path(0, COARSE), [0.0]
         contact, depth = path.start, path.pair.radius * path.body.hardening.stress[0]
@@ -137,7 +137,7 @@ class PlasticLoadCurve:
 
         while depth < path.pair.radius and rises(depth):
             depth *= 2
-        bisect(depth / 2, depth, rises, tolerance=_DEPTH_TOLERANCE)
+        bisect(depth / 2, min(depth, path.pair.radius), rises, tolerance=_DEPTH_TOLERANCE)
         return max(forces)
 
     def _follow_on_mesh(self, kind: str, loads: list[float], mesh: int) -> list[PlasticContact | None]:
