@@ -10,6 +10,7 @@ import sys
 import time
 from contextlib import contextmanager, suppress
 from dataclasses import replace
+from pathlib import Path
 from threading import Event, Thread
 from urllib.parse import parse_qs, urlsplit
 
@@ -28,6 +29,11 @@ ARGUMENTS = ["--no-sandbox", "--disable-gpu", "--disable-background-networking",
 BROWSERS = ("chromium-headless-shell", "chromium", "google-chrome")  # the first takes a fifth less processor time
 NEEDED = os.environ.get("BALLSOCKET_BROWSER") == "needed"
 """Set where a browser must be there: then nothing is skipped."""
+
+
+def script(name):
+    """A function of JavaScript that a page evaluates."""
+    return (Path(__file__).parent / "scripts" / name).read_text("utf-8")
 
 
 def skip_or_fail(reason):

@@ -6,7 +6,7 @@ import pytest
 
 from ballsocket.app.state.screen import VIEWS
 
-from .browser import PICTURES
+from .browser import PICTURES, script
 
 WIDTHS = (390, 768, 900, 1100, 1280, 1440, 1920)
 SIX = "&".join(f"beside{number}.preset=hip-36" for number in range(1, 7))
@@ -28,17 +28,7 @@ FITTED = """async (width) => {
 }"""
 """The width of what is on the page two frames after it has fitted its tables to a window; nothing else follows."""
 
-CUT = """() => {
-  const cut = [];
-  for (const table of document.querySelectorAll("section.view:not([hidden]) table")) {
-    if (!table.getClientRects().length) continue;
-    const place = table.closest(".wide, .narrow, .checks"), { left, right } = table.getBoundingClientRect();
-    if (left < 0 || right > innerWidth + 1) cut.push(`beyond the window: ${table.textContent.slice(0, 60)}`);
-    for (const box of [place, ...table.querySelectorAll("th, td")])
-      if (box.scrollWidth > box.clientWidth + 1) cut.push(`cut or scrolls: ${box.textContent.slice(0, 60)}`);
-  }
-  return cut;
-}"""
+CUT = script("cut.js")
 
 
 def finish_work(page, view):
