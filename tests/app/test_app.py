@@ -481,6 +481,11 @@ def test_a_chart_is_zoomed_and_its_points_are_copied(reader):
     reader.nudge("load")
     reader.answered()
     assert ends() == (low, high)  # it outlives an answer
+    reader.view("Compare")
+    expect(page.locator("#compare-charts button", has_text="Zoom").first).to_be_visible()
+    expect(page.locator("#compare-charts button", has_text="All").first).to_be_hidden()  # a zoom is of its view
+    reader.view("Contact")
+    assert ends() == (low, high)
     reader.drags("#press-charts figure:first-of-type svg[data-chart]", (40, 0))
     assert low <= ends()[0] < ends()[1] < high
     chart.locator("button", has_text="All").click()
@@ -492,6 +497,19 @@ def test_a_chart_is_zoomed_and_its_points_are_copied(reader):
     name, angle, largest = first.split(",")
     assert (name, float(angle)) == ('"exact"', 0.0)
     assert float(largest) == pytest.approx(reader.number("max_pressure"), rel=1e-3)
+    page.evaluate("() => { navigator.clipboard.writeText = () => Promise.reject(new Error('not allowed')) }")
+    chart.locator("button", has_text="CSV").click()
+    reader.says("save the numbers of the view")
+
+
+def test_a_zoom_holds_between_the_points_of_a_curve_and_at_first_contact(reader):
+    chart = reader.open("?preset=hip-28&load.force=3000").page.locator("#press-charts figure").last
+    chart.evaluate("figure => figure.show([1e-9, 2e-9])")  # between the first two points, in mm
+    ticks = chart.locator("svg[data-chart] > text.tick[text-anchor=middle]").all_text_contents()
+    assert all(1e-9 <= float(tick) <= 2e-9 for tick in ticks)
+    chart.evaluate("figure => figure.show([0, 1e-9])")  # with no point but that without a load
+    assert "NaN" not in chart.locator("svg[data-chart]").evaluate("svg => svg.outerHTML")
+    chart.evaluate("figure => figure.show(null)")
 
 
 def test_an_explanation_is_sent_when_it_is_opened_and_keeps_the_focus(reader):

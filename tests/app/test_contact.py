@@ -309,7 +309,7 @@ def test_a_bore_whose_rings_are_on_disk_is_pressed_at_once(monkeypatch, asked):
 
 
 def test_a_bore_is_prepared_by_one_process_for_all_who_wait(monkeypatch):
-    heard, runs = [], [Mock(news=lambda: RunFinished(True)) for _ in range(4)]
+    heard, runs = [], [Mock(news=lambda: RunFinished(True)) for _ in range(5)]
     begun = Mock(side_effect=runs)
     monkeypatch.setattr(jobs, "Run", begun)
     first, second = (Job(lambda key, news: heard.append((key, news.value))) for _ in range(2))
@@ -327,6 +327,9 @@ def test_a_bore_is_prepared_by_one_process_for_all_who_wait(monkeypatch):
     first.ask("press", work)
     second.ask("cup", other)
     assert begun.call_count == 3
+    second.ask("of a keyword", partial(other, yields=True))
+    first.ask("of another keyword", partial(other, yields=False))
+    assert begun.call_count == 5
 
 
 def test_a_map_of_orientations_says_how_many_keep_off_the_rim():

@@ -2,6 +2,7 @@
 
 import asyncio
 import gzip
+import itertools
 import json
 import re
 from base64 import b64decode
@@ -307,7 +308,7 @@ async def edit_without_reading(parts, process):
     user, deaf, sent = await Someone(parts).opened(), await Someone(parts).opened(), []
 
     async def edit_often():
-        for number in range(3000):
+        for number in itertools.count():
             await deaf.says("edit", name="clearance", value=0.05 + 0.001 * (number % 100))
             sent.append(number)
 
@@ -320,8 +321,9 @@ async def edit_without_reading(parts, process):
     for _ in range(10):
         await taken_during_ten_answers()  # caches fill first
     before, sender = megabytes(process), asyncio.ensure_future(edit_often())
-    while not sent or await taken_during_ten_answers():
-        await asyncio.sleep(0)
+    async with asyncio.timeout(PATIENCE):  # until the server takes no more, as all buffers on the way are full
+        while not sent or await taken_during_ten_answers():
+            await asyncio.sleep(0)
     assert await user.moves_load()
     assert megabytes(process) - before < 15
     sender.cancel()

@@ -2,6 +2,7 @@
 
 import operator
 import os
+import re
 import subprocess
 import sys
 import time
@@ -28,6 +29,7 @@ from ballsocket.app.views.contact import Press
 from ballsocket.app.views.hip_runs import gait_key, wear_key
 from ballsocket.app.views.real_cup import bore_of, orientation_key
 from ballsocket.comparison import THIN_LINER_RATIO
+from ballsocket.design_checks import checks_of
 from ballsocket.elasticity.exact.model import Exact
 from ballsocket.files.joint_file import JointFile
 from ballsocket.model_catalogue import JUDGE
@@ -237,6 +239,15 @@ def test_a_run_with_a_yielding_liner_has_its_set_and_its_checks():
     assert page.channel.shown_value("=judge.liner_law")["value"] == "yielding"
     edits(page, "judge.liner_law", "elastic")
     assert "liner_law" not in page.screen.link
+
+
+@pytest.mark.long
+def test_a_run_beyond_the_collapse_load_says_how_far():
+    sentence = until_the_end(judging(2e5, yields=True))[-1].why
+    share = float(re.search(r"Exceeded: normal force is ([\d.]+) times the collapse load", sentence)[1])
+    safe = bs.FiniteElement(plastic=True).press(HIP, force=6000.0)
+    collapse = next(row.capacity for row in checks_of(safe, Cup()) if row.limit == "collapse load")
+    assert share == pytest.approx(2e5 / collapse, rel=0.01)
 
 
 @pytest.mark.long

@@ -100,8 +100,26 @@ def test_tolerances_make_a_band_of_the_results_which_the_first_view_states_too()
     edits(page, "clearance", "0.4")
     assert "outside its tolerance of 0.08 to 0.12 mm" in told(page, "press-band")
     does(page, "view", value="curve")
-    edits(page, "curve.tolerances", "clearance = 0.4 +- 0.2 mm")  # hundreds of slow presses
-    assert "outside the tables" in told(page, "curve-effects")
+    for words in (
+        "0.4 +- 0.2 mm",
+        "3 +- 2.9 mm",
+    ):  # hundreds of slow presses, also where only the ends are in the tables
+        edits(page, "curve.tolerances", f"clearance = {words}")
+        assert "outside the tables" in told(page, "curve-effects")
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        ("clearance = 0.1 +- 0.02 mm; clearance = 0.1 +- 0.05 mm", "clearance is given twice"),
+        ("force = 0 +- 5 kN", "force within its tolerance"),
+        ("clearance = 0.1", "'clearance=0.1+-0.02 mm'"),
+    ],
+)
+def test_a_tolerance_that_cannot_be_followed_is_refused_by_its_name_or_right_form(words, sentence):
+    page = opened(LINK)
+    edits(page, "curve.tolerances", words)
+    assert sentence in unescape(told(page, "curve-effects"))
 
 
 def test_effects_that_take_seconds_are_refused():

@@ -398,6 +398,8 @@ def test_a_question_is_read_as_it_is_typed():
         ("matrix", "liner = uhmwpe, pom", "'liner' in the matrix"),
         ("tolerances", "clearance", "needs a name and ="),
         ("tolerances", "clearance = wide", "clearance"),
+        ("tolerances", "clearance = 0.1 +- 0.02 mm; clearance = 0.1 +- 0.05 mm", "clearance is given twice"),
+        ("matrix", "force = 2 kN; force = 3 kN", "force is given twice"),
         ("accuracy", "half", "accuracy"),
         ("friction", "5", "a coefficient of friction is 0 to 2"),
         ("question", "/etc/passwd", "is a path, and words are needed"),

@@ -83,7 +83,9 @@ map {hip-36} --x 'force=1..4 kN' => force varies, and a load is given too
 optimise {hip-36} --vary 'ball_radius=23..11 mm' => a range goes upwards
 optimise {hip-36} --vary clearance=0.05..0.1 --vary clearance=0.1..0.2 => clearance is given twice
 optimise {hip-36} --vary liner=pon,UHMWPE => liner material 'pon' is not known; did you mean 'pom'?
-sensitivity {hip-36} --spread clearance=much => is not a range
+sensitivity {hip-36} --spread clearance=much => is not a tolerance or range, such as 'clearance=0.1+-0.02 mm'
+sensitivity {hip-36} --spread liner.poisson=0.4+-0.05 => 'liner.poisson' among what can scatter is not known
+press {hip-36} --report hip.html --tolerance force=3+-1 --tolerance force=2+-1 => force is given twice
 sensitivity {spread} --correlation clearance=0.5 => 'clearance=0.5' is not a correlation
 sensitivity {spread} --correlation 'clearance, force = 0.5' => 'force' among the correlated parameters is not
 sensitivity {spread} --of pressure => 'pressure' among the quantities is not known

@@ -6,6 +6,7 @@ over shear moduli of 500 MPa).
 """
 
 import string
+from dataclasses import replace
 from math import exp, sqrt
 
 import numpy as np
@@ -13,7 +14,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.problem import presets
-from ballsocket.problem.presets import MATERIAL_ALIASES, find_material, material_hint, named_material
+from ballsocket.problem.presets import MATERIAL_ALIASES, find_material, material_hint, material_label, named_material
 
 from ..extent import either
 
@@ -146,3 +147,11 @@ def test_the_modulus_of_a_hardening_is_one_number_of_any_kind():
     assert bs.Hardening.parse(str(curve)) == curve
     with pytest.raises(TypeError, match="young of hardening must be one number"):
         bs.Hardening(stress=(20.0,), young=np.array([1200.0, 1300.0]))
+
+
+def test_only_the_elastic_constants_of_a_preset_have_the_label_of_its_grade():
+    grade = material_label(bs.UHMWPE, "a material")
+    assert grade == "UHMWPE, conventional"
+    assert material_label(bs.UHMWPE.without_strengths(), "a material") == grade
+    assert material_label(replace(bs.UHMWPE, young=500.0), "a material") == "UHMWPE"
+    assert material_label(replace(bs.UHMWPE, poisson=0.3), "a material") == "UHMWPE"

@@ -48,7 +48,8 @@ class Job:
             return
         self.stop()
         self._key, self._context = key, copy_context()
-        self._work = getattr(work, "func", work), getattr(work, "args", ())
+        keywords = getattr(work, "keywords", {})
+        self._work = getattr(work, "func", work), getattr(work, "args", ()), tuple(sorted(keywords.items()))
         try:
             hash(self._work)
         except TypeError:  # work without comparable arguments is unique

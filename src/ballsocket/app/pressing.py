@@ -12,6 +12,7 @@ import numpy
 from ..comparison import MAX_HALF_ANGLE, Comparison, compare, force_curves
 from ..contact import Contact, Model
 from ..contact.describe import values_of
+from ..core.checks import unique
 from ..core.quantities import FIELD
 from ..core.validity import OutsideDomainError
 from ..files.joint_file import JointFile
@@ -23,7 +24,7 @@ from ..reports.joint_drawing import profile
 from ..reports.press_plots import FORCE_CURVE, force_axes
 from ..reports.style import LineStyle
 from ..reports.svg import rounded_up
-from ..studies.derivatives import LocalUncertainty, local_uncertainty
+from ..studies.derivatives import LocalUncertainty, local_uncertainty, scattered_joints
 from ..studies.expressions import parse_distribution
 from ..studies.run import default_model
 from .pictures.chart import Curve, chart, charts
@@ -79,9 +80,8 @@ def effects_of(file: JointFile, tolerances: str) -> LocalUncertainty | None:
     """
     if not _has_effects(file):
         return None
-    spreads = dict(map(parse_distribution, phrases_in(tolerances)))
-    ends = {name: spread.frozen.support() for name, spread in spreads.items()}
-    if spreads and default_model(file.joint, {**file.load, **ends}).seconds_a_press > _SLOWEST_SCATTERED:
+    spreads = unique(map(parse_distribution, phrases_in(tolerances)))
+    if spreads and scattered_joints(file.joint, file.load, spreads)[0].seconds_a_press > _SLOWEST_SCATTERED:
         raise ValueError("some joints within the tolerances are outside the tables: check their middle, or narrow them")
     return local_uncertainty(file.joint, file.cup, file.load, spreads)
 

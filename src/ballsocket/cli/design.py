@@ -10,7 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from ..contact import Model
-from ..core.checks import require
+from ..core.checks import require, unique
 from ..core.kinds import Choice
 from ..core.storage.atomic_files import check_ending, write_csv
 from ..files.joint_file import JointFile
@@ -102,7 +102,7 @@ def design_map(
     _check_points(points)
     file = joint_options.read(joint)
     limits = _limits(limit, file)
-    ends = _unique((name, (low, high)) for name, low, high in map(parse_range, (x, y)))
+    ends = unique((name, (low, high)) for name, low, high in map(parse_range, (x, y)))
     stated = joint_options.stated(file, ends)
     sizes = {name: [value] for name, value in stated.items()}
     load, model = _load(joint_options, file, ends), press_options.choose_model(file, {**ends, **sizes})
@@ -143,9 +143,9 @@ def optimise(
     file, goals = joint_options.read(joint), minimise or ["max_pressure"]
     limits = _limits(limit, file)
     lists = [parse_choices(phrase) for phrase in vary]
-    choices = _unique(choice for choice in lists if choice is not None)
+    choices = unique(choice for choice in lists if choice is not None)
     phrases = [phrase for phrase, choice in zip(vary, lists, strict=True) if choice is None]
-    ranges = _unique((name, (low, high)) for name, low, high in map(parse_range, phrases))
+    ranges = unique((name, (low, high)) for name, low, high in map(parse_range, phrases))
     choices |= {name: [value] for name, value in joint_options.stated(file, {**ranges, **choices}).items()}
     if output.figure is not None and len(goals) == 1 and len(ranges) != 2:
         raise ValueError(f"a map has two axes, and {len(ranges)} numbers vary: no figure")
@@ -240,7 +240,7 @@ def sensitivity(
         check_ending("", csv, ".csv")
     require("seed", seed, seed >= 0, "a seed is 0 or more")
     file = joint_options.read(joint)
-    distributions = _unique(map(parse_distribution, spread))
+    distributions = unique(map(parse_distribution, spread))
     stated = joint_options.stated(file, distributions)
     means = {name: [float(distribution.frozen.mean())] for name, distribution in distributions.items()}
     means |= {name: [value] for name, value in stated.items()}
@@ -288,19 +288,6 @@ def _limits(phrases: list[str] | None, file: JointFile) -> list[Limit]:
     """Parse limits from text; distances from the edge are for the cup and the load's direction of a file."""
     cup, direction = file.cup.under_load(file.tilt)
     return [replace(parse_limit(phrase), cup=cup, direction=direction) for phrase in phrases or []]
-
-
-def _unique(pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:
-    """Return pairs of name and value as a dictionary.
-
-    Raises ValueError: a name occurs twice.
-    """
-    values: dict[str, Any] = {}
-    for name, value in pairs:
-        if name in values:
-            raise ValueError(f"{name} is given twice; one is needed")
-        values[name] = value
-    return values
 
 
 def _quantities(goals: Iterable[str], limits: Iterable[Limit], model: Model) -> list[str]:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeGuard
 import typer
 
 from ..comparison import Comparison, successful_contacts
-from ..core.checks import check_names
+from ..core.checks import unique
 from ..core.unit_systems import Units
 from ..files.joint_file import JointFile
 from ..model_catalogue import JUDGE, OFF_AXIS, reference
@@ -135,15 +135,8 @@ class ReportOptions:
         if not self.tolerance:
             return {}
         from ..studies.expressions import parse_distribution
-        from ..studies.parameters import PARAMETERS
 
-        parsed = list(map(parse_distribution, self.tolerance))
-        names = [name for name, _ in parsed]
-        for name in names:
-            check_names([name], PARAMETERS, "among what can have a tolerance")
-            if names.count(name) > 1:
-                raise ValueError(f"{name} has {names.count(name)} tolerances; one is needed")
-        return dict(parsed)
+        return unique(map(parse_distribution, self.tolerance))
 
     def design(self, answer: PressAnswer, units: Units, remarks: Sequence[str]) -> Any:
         """Return a design of the report with the effect of its tolerances; None without a report."""

@@ -175,6 +175,16 @@ def needs(extra: str, *modules: str) -> None:
             raise ImportError(f'{module} is not installed: pip install "ballsocket[{extra}]"', name=module)
 
 
+def unique(pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:
+    """Return pairs of name and value as a dictionary; raise ValueError for a name that occurs twice."""
+    values: dict[str, Any] = {}
+    for name, value in pairs:
+        if name in values:
+            raise ValueError(f"{name} is given twice; one is needed")
+        values[name] = value
+    return values
+
+
 def check_names(names: Iterable[str], known: Iterable[str], where: str) -> None:
     """Raise ValueError for the first name that is not known; `where` completes the message."""
     for name in names:

@@ -152,22 +152,30 @@ _MATERIALS: dict[str, Material] = {
 }
 
 _LABELS = {
-    UHMWPE.name: "UHMWPE, conventional",
-    CROSSLINKED_PE.name: "cross-linked UHMWPE",
-    POM.name: "POM, acetal copolymer",
-    PEEK.name: "PEEK, unfilled",
-    STRUCTURAL_STEEL.name: "structural steel, S235",
-    COCR.name: "CoCrMo",
-    ALUMINA.name: "alumina ceramic",
-    TITANIUM.name: "titanium alloy, Ti-6Al-4V",
-    BONE_CEMENT.name: "bone cement, PMMA",
+    UHMWPE: "UHMWPE, conventional",
+    CROSSLINKED_PE: "cross-linked UHMWPE",
+    POM: "POM, acetal copolymer",
+    PEEK: "PEEK, unfilled",
+    STRUCTURAL_STEEL: "structural steel, S235",
+    COCR: "CoCrMo",
+    ALUMINA: "alumina ceramic",
+    TITANIUM: "titanium alloy, Ti-6Al-4V",
+    BONE_CEMENT: "bone cement, PMMA",
 }
-"""Names on pages for readers, by the short name; drawings have the part before a comma."""
+"""Names on pages for readers; drawings have the part before a comma."""
 
 
 def material_label(material: Material | None, unnamed: str) -> str:
-    """Return the plain name of a material for pages: "rigid" for None, and a word for one without a name."""
-    return "rigid" if material is None else _LABELS.get(material.name, material.name) or unnamed
+    """Return the plain name of a material for pages: "rigid" for None, and a word for one without a name.
+
+    A material with other elastic constants than the preset of its name has that name alone.
+    """
+    if material is None:
+        return "rigid"
+    for preset, label in _LABELS.items():
+        if preset.name == material.name and preset == preset.with_numbers(material.young, material.poisson):
+            return label
+    return material.name or unnamed
 
 
 _ALIASES = {

@@ -14,7 +14,8 @@ from ..core.arrays import Numbers
 from ..core.checks import check_names, needs
 from ..problem import Joint
 from ..problem.cup import Cup
-from .design import check_samples, sample
+from .axes import check_allowed
+from .design import sample
 from .distributions import Distribution, check_nominal
 from .parameters import AIMS, LENGTHS, LOADS, PARAMETERS, check_aims, nominal_value, press_arguments
 from .run import default_model
@@ -222,15 +223,25 @@ def local_uncertainty(
     changes = elasticities(model, joint, REPORTED_QUANTITIES, {**point, **load})
     if not tolerances:
         return LocalUncertainty(model=model.name, changes=changes, band={})
-    design = sample(_SAMPLE_COUNT, **dict[str, Any](tolerances))
-    check_samples(design)
-    samples = design.values_in([slice(None)])
+    scattered, values = scattered_joints(joint, load, tolerances)
+    results = _press_scattered(scattered.in_cup(cup), joint, values, REPORTED_QUANTITIES)
+    bands = {name: _ends(numbers) for name, numbers in results.items()}
+    return LocalUncertainty(model=model.name, changes=changes, band=bands)
+
+
+def scattered_joints(
+    joint: Joint, load: Mapping[str, float], tolerances: Mapping[str, Distribution]
+) -> tuple[Model, dict[str, Any]]:
+    """Sample the joints and loads within tolerances, and choose the model that presses them.
+
+    The arguments are those of `local_uncertainty`. Raises ValueError: a sample that is not allowed.
+    """
+    samples = sample(_SAMPLE_COUNT, **dict[str, Any](tolerances)).values_in([slice(None)])
+    for name, values in samples.items():
+        check_allowed(name, values, position=" within its tolerance", hint="; narrow the tolerance")
     fixed = {} if set(samples) & set(load) else dict(load)
     ranges = {name: [values.min(), values.max()] for name, values in samples.items()}
-    scattered = default_model(joint, {**ranges, **{name: [number] for name, number in fixed.items()}}).in_cup(cup)
-    results = _press_scattered(scattered, joint, {**samples, **fixed}, REPORTED_QUANTITIES)
-    bands = {name: _ends(values) for name, values in results.items()}
-    return LocalUncertainty(model=model.name, changes=changes, band=bands)
+    return default_model(joint, {**ranges, **{name: [number] for name, number in fixed.items()}}), {**samples, **fixed}
 
 
 def off_axis_uncertainty(

@@ -25,13 +25,13 @@ Read = Callable[[str, Any], float]
 _MAX_CHARACTERS = 200  # largest length of a text; matching a longer one could take seconds
 
 
-def parse_range(text: str) -> tuple[str, float, float]:
+def parse_range(text: str, form: str = "a range, such as 'ball_radius=11..23 mm'") -> tuple[str, float, float]:
     """Parse a name and the two ends of its range in mm, N, MPa or rad, as in "ball_radius=11..23 mm".
 
-    Raises ValueError: another form, or an unknown name.
+    Raises ValueError: an unknown name, or text that is not of the `form`, which the message states.
     """
-    form = f"{shown(text)} is not a range, such as 'ball_radius=11..23 mm'"
-    name, low, high = _parts(r"\s*(\w+)\s*=\s*(.+?)\s*\.\.\s*(.+?)\s*", text, form)
+    pattern = r"\s*([\w.]+)\s*=\s*(.+?)\s*\.\.\s*(.+?)\s*"
+    name, low, high = _parts(pattern, text, f"{shown(text)} is not {form}")
     check_names([name], PARAMETERS, "among what can vary")
     kind = PARAMETERS[name].kind
     return name, parse(name, _add_unit(low, high), kind), parse(name, high, kind)
@@ -52,7 +52,7 @@ def parse_choices(text: str) -> tuple[str, list[Any]] | None:
 
     Raises ValueError: an unknown name or material, or text that is not a number.
     """
-    match = _match(r"\s*(\w+)\s*=\s*([^=]+?)\s*", text)
+    match = _match(r"\s*([\w.]+)\s*=\s*([^=]+?)\s*", text)
     if match is None or ".." in text:
         return None
     name, listed = match.groups()
@@ -72,9 +72,9 @@ def parse_distribution(text: str) -> tuple[str, Distribution]:
 
     Raises ValueError: another form, or an unknown name.
     """
-    match = _match(r"\s*(\w+)\s*=\s*(.+?)\s*(?:\+-|\+/-|±)\s*(.+?)\s*", text)
+    match = _match(r"\s*([\w.]+)\s*=\s*(.+?)\s*(?:\+-|\+/-|±)\s*(.+?)\s*", text)
     if match is None:
-        name, low, high = parse_range(text)
+        name, low, high = parse_range(text, "a tolerance or range, such as 'clearance=0.1+-0.02 mm' or '0.08..0.12 mm'")
         return name, Rectangular(low=low, high=high)
     name, nominal, plus_minus = match.groups()
     check_names([name], PARAMETERS, "among what can scatter")
@@ -91,7 +91,7 @@ def parse_correlations(texts: Iterable[str]) -> Correlation:
     correlation: dict[tuple[str, str], float] = {}
     for text in texts:
         form = f"{shown(text)} is not a correlation, such as 'clearance, liner_young = 0.5'"
-        one, other, rank = _parts(r"\s*(\w+)\s*,\s*(\w+)\s*=\s*(.+?)\s*", text, form)
+        one, other, rank = _parts(r"\s*([\w.]+)\s*,\s*([\w.]+)\s*=\s*(.+?)\s*", text, form)
         check_names([one, other], PARAMETERS, "among what can scatter")
         value = parse(f"correlation of {one} and {other}", rank, Kind.NUMBER)
         if (one, other) in correlation:
@@ -108,7 +108,7 @@ def parse_limit(text: str) -> Limit:
     from .limits import LIMITED_NAMES, Limit  # slow to import
 
     form = f"{shown(text)} is not a limit, such as 'outer_radius<=26 mm'"
-    name, sign, end = _parts(r"\s*(\w+)\s*(<=|>=|≤|≥|<|>|==?)\s*(.+?)\s*", text, form)
+    name, sign, end = _parts(r"\s*([\w.]+)\s*(<=|>=|≤|≥|<|>|==?)\s*(.+?)\s*", text, form)
     if "=" in (sign, sign[:1]):
         raise ValueError(f"{shown(text)} is not a limit: it needs <= or >=, such as 'outer_radius<=26 mm'")
     check_names([name], LIMITED_NAMES, "among what can be limited")

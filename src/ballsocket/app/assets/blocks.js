@@ -69,7 +69,7 @@ const makers = { sentence, items, numbers, checks, table, charts, section, scale
 /** Fill an element with HTML, or with blocks and pieces of HTML. @param {Element} place  @param {any} content */
 export function fillBlocks(place, content) {
   if (typeof content === "string") place.innerHTML = content;
-  else place.replaceChildren(...content.map((block) => (block.kind ? makers[block.kind](block) : parsed(block))));
+  else place.replaceChildren(...content.map((block) => (block.kind ? makers[block.kind](block, place) : parsed(block))));
 }
 document.addEventListener("toggle", (event) => { // an explanation is sent when it is opened
   const about = /** @type {HTMLDetailsElement} */ (event.target), name = about.dataset?.why;

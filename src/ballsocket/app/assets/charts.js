@@ -6,14 +6,14 @@ const LEFT = 58, RIGHT = 12, TOP = 10, FOOT = 44, THICK = 2, THIN = 1, NEAR = 18
 /**
  * @typedef {{name: string, line: string[], x: (number | null)[], y: (number | null)[],
  *   trusted: number | number[], mark: number[] | null, band: number[][] | null}} Curve
- * @typedef {{label: string, x: string, y: string, start: number, ends: number[], size: number[], flagged: number[][],
+ * @typedef {{key: string, label: string, x: string, y: string, start: number, ends: number[], size: number[], flagged: number[][],
  *   caption: string[], curves: Curve[]}} Chart
  * @typedef {{chart: Chart, x: number[], y: number[], across: (x: number) => number, up: (y: number) => number}} Drawn
  */
 /** @type {WeakMap<Element, Drawn>} */
 const drawn = new WeakMap(); // by the picture
 /** @type {Map<string, number[]>} */
-const windows = new Map(); // ends of x that were chosen, by the labels of the axes: they outlive an answer
+const windows = new Map(); // ends of x that were chosen, by the chart's place and axes: they outlive an answer
 
 /**
  * Return the multiples of a round step between two ends.
@@ -36,12 +36,14 @@ function pathOf(points) {
 }
 /** Return the ends of both axes: all of the chart, or a window of x with the values in it. @param {Chart} chart */
 function endsOf(chart) {
-  const x = windows.get(`${chart.x} ${chart.y}`);
-  const inside = !x ? [] : chart.curves.flatMap((curve) =>
+  const x = windows.get(chart.key), whole = [0, chart.ends[1]];
+  if (!x) return { x: [chart.start, chart.ends[0]], y: whole };
+  const inside = chart.curves.flatMap((curve) =>
     curve.y.filter((value, index) => value !== null && curve.x[index] >= x[0] && curve.x[index] <= x[1]));
-  const low = Math.min(...inside), high = Math.max(...inside), margin = 0.06 * (high - low || Math.abs(high));
-  if (inside.length) return { x, y: [low - margin, high + margin] };
-  return { x: [chart.start, chart.ends[0]], y: [0, chart.ends[1]] };
+  if (!inside.length) return { x, y: whole };
+  const low = Math.min(...inside), high = Math.max(...inside);
+  const margin = 0.06 * (high - low || Math.abs(high) || whole[1]);
+  return { x, y: [low - margin, high + margin] };
 }
 /** @param {Chart} chart */
 function draw(chart) {
@@ -95,17 +97,21 @@ function draw(chart) {
   svg.append(area);
   return svg;
 }
-/** Draw charts beside each other, with the names of curves and further words below. @param {any} block */
-export function charts({ charts: all, legend }) {
-  const figures = element("div", { class: all.length > 1 ? "pair" : "" }, ...all.map(figure));
-  if (!legend) return figures;
+/**
+ * Draw charts beside each other, with the names of curves and further words below.
+ * @param {any} block  @param {Element} place
+ */
+export function charts({ charts: all, legend }, place) {
+  const figures = all.map((chart) => figure({ ...chart, key: `${place.id} ${chart.x} ${chart.y}` }));
+  const row = element("div", { class: all.length > 1 ? "pair" : "" }, ...figures);
+  if (!legend) return row;
   const names = all[0].curves.map(({ name, line }) => element("span", { class: "key" }, swatch(line), name));
   const words = legend.map((text) => element("span", { class: "key" }, text));
-  return element("div", {}, figures, element("p", { class: "legend" }, ...names, ...words));
+  return element("div", {}, row, element("p", { class: "legend" }, ...names, ...words));
 }
 /** @param {Chart} chart */
 function figure(chart) {
-  const [words, red] = chart.caption, key = `${chart.x} ${chart.y}`;
+  const [words, red] = chart.caption, { key } = chart;
   const caption = element("figcaption", {}, words ?? "");
   if (!chart.curves.length) return element("figure", { class: "quiet" }, caption, draw(chart));
   if (red) caption.append(element("b", { class: "no" }, red));
@@ -127,8 +133,9 @@ function figure(chart) {
   });
   all.addEventListener("click", () => node.show(null));
   all.hidden = !windows.has(key);
-  copy.addEventListener("click", () => navigator.clipboard?.writeText(csvOf(chart)).then(() => tell("copied"))
-    ?? tell("This browser lets no page copy here: save the numbers of the view as CSV"));
+  const refuse = () => tell("This browser lets no page copy here: save the numbers of the view as CSV");
+  copy.addEventListener("click", () =>
+    navigator.clipboard?.writeText(csvOf(chart)).then(() => tell("copied"), refuse) ?? refuse());
   node.append(element("div", { class: "chart-tools" }, zoom, all, copy));
   return node;
 }

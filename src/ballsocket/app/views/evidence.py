@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from ...contact.verdict import Verdict
-from ...core.checks import check_names, shown
+from ...core.checks import check_names, shown, unique
 from ...core.display import counted
 from ...core.kinds import Kind
 from ...core.quantities import LOADS
@@ -212,8 +212,8 @@ def _tables(inputs: EvidenceQuestion, file: JointFile) -> Tables:
         "finite_elements": inputs.elements == "yes",
         "risk": {"influence": inputs.influence, "consequence": inputs.consequence},
         "required": {"accuracy": inputs.accuracy, "limits": list(phrases_in(inputs.limits))},
-        "matrix": dict(map(_axis, (*_load_cases(inputs, file), *phrases_in(inputs.matrix)))),
-        "tolerances": dict(_halves("tolerances", phrase) for phrase in phrases_in(inputs.tolerances)),
+        "matrix": unique(map(_axis, (*_load_cases(inputs, file), *phrases_in(inputs.matrix)))),
+        "tolerances": unique(_halves("tolerances", phrase) for phrase in phrases_in(inputs.tolerances)),
         **_joint(file),
     }
     if inputs.friction.strip():

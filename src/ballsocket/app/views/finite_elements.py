@@ -17,7 +17,7 @@ from ...core.answers import Check
 from ...core.quantities import CONTACT, JOINT, PLASTIC
 from ...core.unit_systems import Units
 from ...core.validity import OutsideDomainError
-from ...design_checks import checks_of
+from ...design_checks import checks_of, verdict_of
 from ...elasticity.finite_elements.model import MeshedContact
 from ...files.joint_file import JointFile
 from ...model_catalogue import JUDGE, named_models, reference, with_yielding
@@ -163,7 +163,9 @@ def run_finite_elements(file: JointFile, report: Report, *, yields: bool = False
         contact = model.press(file.joint, **{kind: share * load})
         report(Reached(share=0.05 + 0.75 * share, words=f"pressed to {100 * share:g} % of the load"))
     if contact.status.failed:
-        raise ValueError(f"the finite elements have no result: {contact.status.sentence}")
+        rows = checks_of(contact, file.cup)
+        verdict = f". {verdict_of(rows)[1]}" if rows else ""
+        raise ValueError(f"the finite elements have no result: {contact.status.sentence}{verdict}")
     assert isinstance(contact, MeshedContact)
     try:
         exact = reference.press(file.joint, **file.load)
