@@ -5,14 +5,16 @@ from __future__ import annotations
 import io
 import tempfile
 import zipfile
-from collections.abc import Hashable, Iterator, Mapping
+from collections.abc import Callable, Hashable, Iterator, Mapping
 from dataclasses import dataclass, fields, replace
 from functools import partial
 from html import escape
 from math import prod
 from operator import itemgetter
 from pathlib import Path
+from shutil import rmtree
 from typing import Any
+from weakref import finalize
 
 from ...contact.verdict import Verdict
 from ...core.checks import check_names, shown, unique
@@ -64,7 +66,8 @@ class Evidence(LongView):
 
     def begin(self) -> None:
         super().begin()
-        self._folder: tempfile.TemporaryDirectory[str] | None = None
+        self._folder = ""
+        self._remove: Callable[[], Any] | None = None
         self.actions |= {"evidence.take": self._take, "evidence.allowable": self._limit_allowable}
 
     def question_of(self, screen: Screen) -> Hashable:
@@ -76,9 +79,12 @@ class Evidence(LongView):
         axes_of(screen.asked, screen.file, screen.use)  # an invalid question is refused at once
         if not screen.asked.limits.strip():
             raise ValueError(_NO_LIMIT)
-        if self._folder is None:
-            self._folder = tempfile.TemporaryDirectory(prefix="ballsocket-")
-        return partial(gather_pack, screen.asked, screen.file, screen.use, self._folder.name)
+        if not self._folder:
+            self._folder = tempfile.mkdtemp(prefix="ballsocket-")
+            self._remove = finalize(
+                self, rmtree, self._folder, ignore_errors=True
+            )  # also with a page that is forgotten
+        return partial(gather_pack, screen.asked, screen.file, screen.use, self._folder)
 
     def controls(self, screen: Screen) -> list[Control]:
         def present(name: str) -> float:
@@ -129,8 +135,8 @@ class Evidence(LongView):
 
     def leave(self) -> None:
         super().leave()
-        if self._folder is not None:
-            self._folder.cleanup()
+        if self._remove is not None:
+            self._remove()
 
 
 def _limits(question: EvidenceQuestion) -> tuple[Limit, ...]:
