@@ -166,6 +166,37 @@ def test_the_joint_of_a_formula_can_be_changed(name, tmp_path):
         assert not library.valid((0.0, 0.0, 0.3 + (1.1 * deepest or 0.01)))
 
 
+UNYIELDING = HIP.replace(liner=replace(HIP.liner, yield_stress=None))  # whose validity needs no ratio of stresses
+SUSPENSION = bs.joints["suspension-ball-joint"]
+
+
+@pytest.mark.parametrize(
+    ("name", "joint", "factors"),
+    some(
+        [
+            ("hess-forsbach", UNYIELDING, (2.0, 2.5)),
+            ("bonded-layer", UNYIELDING, (1.0, 0.3)),
+            ("vessel", UNYIELDING, (2.0, 2.5)),
+            ("bartel", UNYIELDING, (1.0, 2.5)),
+            ("hertz", UNYIELDING, (2.0, 1.0)),
+            ("hertz", SUSPENSION, (2.0, 1.0)),
+        ],
+        6,
+    ),
+)
+def test_a_changed_joint_is_valid_where_its_own_export_is(name, joint, factors, tmp_path):
+    clearance, thickness = joint.clearance * factors[0], joint.liner_thickness * factors[1]
+    element = ForceElement(named_model(name), joint.replace(clearance=clearance, liner_thickness=thickness))
+    own = Library(element, tmp_path, name="own")
+    tuned = Library(ForceElement(named_model(name), joint), tmp_path)
+    tuned.parameters[:] = own.defaults
+    positions = [(0.0, 0.0, clearance + depth) for depth in np.geomspace(1e-4, 1.05, 200) * element.wall]
+    valid = [own.valid(position) for position in positions]
+    assert [tuned.valid(position) for position in positions] == valid
+    assert not valid[-1]
+    assert any(valid) == (joint is not SUSPENSION)
+
+
 def test_a_joint_without_a_law_is_refused(tmp_path):
     library = Library(ForceElement(bs.Hertz(), HIP, smoothing=0.02), tmp_path)
     for name, value, text in (
@@ -209,6 +240,12 @@ def test_bristles_have_the_load_and_rates_of_the_python_element(tmp_path):
     found = library._call("load", [*state, (np.nan, 0.0, 0.0, 0.0)], 3, 3, 1, 4)
     assert found[0] == ContactState.NO_NUMBER
     assert np.isnan(np.concatenate(found[1:])).all()
+
+
+def test_a_header_explains_bristles_where_there_are_some():
+    for friction, explained in ((Friction(coefficient=0.05), False), (Bristles(coefficient=0.05), True)):
+        header = CElement(element=ForceElement(bs.HessForsbach(), HIP, friction=friction)).header
+        assert ("ristles" in header) == explained
 
 
 def test_names_are_those_that_c_allows_and_neither_open_nor_close_a_comment():

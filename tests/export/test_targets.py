@@ -6,6 +6,7 @@ import sys
 from dataclasses import replace
 from math import exp, pi, sqrt
 from pathlib import Path
+from types import ModuleType, SimpleNamespace
 from xml.etree.ElementTree import fromstring
 
 import numpy as np
@@ -79,8 +80,37 @@ def test_the_python_module_has_the_loads_of_the_element_and_needs_no_package(tmp
         with pytest.raises(joint.NoForce, match="not finite"):
             joint.load((0.0, 0.0, 1e200))
         joint.parameters[0] = -1.0
-        with pytest.raises(ValueError, match="hysteresis must be finite and 0 or more"):
-            joint.load(*STATE)
+        position = STATE[0]
+        for call, given in (
+            (joint.load, STATE),
+            (joint.slope, (*STATE, (1.0,) * 9)),
+            (joint.status, [position]),
+            (joint.contact, [position]),
+        ):
+            with pytest.raises(ValueError, match="hysteresis must be finite and 0 or more"):
+                call(*given)
+
+
+@needs_compiler
+def test_axes_of_a_socket_in_exudyn_may_be_a_list(tools, tmp_path, monkeypatch):
+    """Exudyn receives the negative load, turned by the axes; its functions used here are stood in for."""
+    exudyn, items = ModuleType("exudyn"), ModuleType("exudyn.itemInterface")
+    exudyn.OutputVariableType, exudyn.itemInterface, items.ObjectConnectorRigidBodySpringDamper = None, items, dict
+    monkeypatch.setitem(sys.modules, "exudyn", exudyn)
+    monkeypatch.setitem(sys.modules, "exudyn.itemInterface", items)
+    ground = SimpleNamespace(
+        AddObject=lambda made: made,
+        GetMarker=lambda marker: {"bodyNumber": 0},
+        GetObject=lambda body: {"objectType": "Ground"},
+    )
+    written("exudyn", LOSSY, tmp_path)
+    axes = [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]
+    turned = [np.array(axes) @ part for part in STATE]
+    with tools.module(tmp_path, "bouncing_exudyn") as made:
+        connector = made.add_joint(ground, 0, 1, socket_axes=axes)
+        found = connector["springForceTorqueUserFunction"](ground, 0.0, 0, turned[0], None, *turned[1:])
+    load = LOSSY(*IN_MM)
+    assert_allclose(found, [*(-np.array(axes) @ load.force), *(-1e-3 * np.array(axes) @ load.moment)], rtol=1e-9)
 
 
 @needs_compiler

@@ -44,7 +44,7 @@ class CElement:
     Raises
     ------
     ValueError
-        A name that C does not allow; an unknown `beyond`; an element with a state (bristles or adhesion).
+        A name that C does not allow; an unknown `beyond`; an element with a state other than bristles (adhesion).
 
     Examples
     --------
@@ -135,13 +135,15 @@ class CElement:
 
     @property
     def _arguments(self) -> dict[str, str]:
-        """Further arguments of the functions in C for the deflections of bristles, and the sizes of their arrays."""
+        """Arguments of the functions in C for the deflections of bristles, comments on them, and sizes of arrays."""
         count = bristle_count(self.element)
         return {
             "deflection": f", const double deflection[{count}]" if count else "",
             "not_finite": " || !is_finite(deflection) || !is_finite(deflection + 1)" if count else "",
             "no_rate": f"\n        fill(rate, {count}, NAN, 0);" if count else "",
             "rate": f", double rate[{count}]" if count else "",
+            "bristle_units": "\n   Deflections of bristles are in mm, their rates in mm/s." if count else "",
+            "bristle_slopes": "\n   Rates of bristles, and deflections in the direction, come last." if count else "",
             "count": str(9 + count),
         }
 

@@ -184,13 +184,13 @@ class Recording:
         depth = self.centre.indentation
         if self.joint is None:
             return {"valid": depth <= self.element.valid_depth}
-        model, joint, contact = self.element.model, self.element.joint.with_floats(), self._pressed(self.joint, depth)
-        first_touch, deepest = (model.press(joint, indentation=share * self.element.wall) for share in (1e-3, 1.0))
-        valid = depth <= self.constants.wall
-        for limit in model.validity:
-            if limit.holds(first_touch) or not limit.holds(deepest):
-                valid = valid & limit.holds(contact)
-        if joint.strengths():
+        wall = self.constants.wall
+        contact, first_touch, deepest = (self._pressed(self.joint, each) for each in (depth, 1e-3 * wall, wall))
+        valid = depth <= wall
+        for limit in self.element.model.validity:
+            is_lower = logical_not(limit.holds(first_touch)) & limit.holds(deepest)
+            valid = valid & (limit.holds(contact) | is_lower)
+        if self.joint.strengths():
             valid = valid & logical_not(contact.utilisation > MAX_ELASTIC_UTILISATION)
         return {"valid": (depth <= 0.0) | valid}
 

@@ -275,8 +275,8 @@ class Fmu:
     mass : float
         Mass of the ball in kg, for the advice on time steps.
     ball_mass : float, optional
-        Mass in kg, above 0, of a ball inside, whose motion the unit integrates in a socket at rest. Its inputs are then
-        a force and a torque on the ball. None, the default, has no ball.
+        Mass in kg, at least 1e-100, of a ball inside, whose motion the unit integrates in a socket at rest. Its inputs
+        are then a force and a torque on the ball. None, the default, has no ball.
 
     Raises
     ------
@@ -293,7 +293,8 @@ class Fmu:
 
     def __post_init__(self) -> None:
         if self.ball_mass is not None:
-            require("ball_mass", self.ball_mass, 0.0 < self.ball_mass < inf, "a mass (kg) must be above 0 and finite")
+            valid = 1e-100 <= self.ball_mass < inf  # lighter balls take steps of 0 s
+            require("ball_mass", self.ball_mass, valid, "a mass (kg) must be at least 1e-100 and finite")
         require("FMI version", self.version, self.version in STANDARDS, "2 or 3")
         CElement(element=self.element, name=self.name, beyond=self.beyond)
 

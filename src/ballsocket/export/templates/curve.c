@@ -1,6 +1,6 @@
 /* A quantity as piecewise polynomials of d, with `density` pieces from each power of two to the next. A row has the
-   origin of a piece and the coefficients in d less the origin, the highest power first; `out` has the quantity and three
-   derivatives. Below the low end it is a power of d, without contact 0, and beyond the high end NaN. */
+   origin of a piece and the coefficients in d less the origin, the highest power first; `out` has the quantity and
+   three derivatives. Below the low end it is a power of d, without contact 0, and beyond the high end NaN. */
 typedef struct {
     double low, high;
     int first, density, pieces, terms;

@@ -48,8 +48,8 @@ $unloaded
     return square > 0.0 && unloaded > 0.0 && square <= unloaded * unloaded;
 }
 
-int ${name}_load(const ${name}_parameters *p, const double position[3], const double velocity[3], const double spin[3]$deflection,
-                 double force[3], double moment[3], double *energy$rate)
+int ${name}_load(const ${name}_parameters *p, const double position[3], const double velocity[3],
+                 const double spin[3]$deflection, double force[3], double moment[3], double *energy$rate)
 {
     int status;
     if (!is_finite(position) || !is_finite(velocity) || !is_finite(spin)$not_finite) {

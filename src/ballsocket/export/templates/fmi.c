@@ -196,8 +196,9 @@ static void find_rates(const instance *i, const double x[VALUES], double y[RESUL
 static const char *complaint_of(const instance *i, const ${name}_parameters *p)
 {
 #if BALL
-    if (!(i->now.parameter[MASS] > 0.0 && i->now.parameter[INERTIA] > 0.0))
-        return "mass and inertia must be above 0";
+    const double mass = i->now.parameter[MASS], inertia = i->now.parameter[INERTIA];
+    if (!(mass > 0.0 && 1.0 / mass < INFINITY && inertia > 0.0 && 1.0 / inertia < INFINITY))
+        return "mass and inertia must be above 0, and their reciprocals finite";
 #endif
     (void)i;
     return ${name}_complaint(p);
@@ -272,7 +273,7 @@ static result advance(instance *i, double end)
             i->now.time = h < end - i->now.time ? i->now.time + h : end;
         else
             memcpy(x, start, sizeof start);
-        i->now.step = h * (worst > 1e-10 ? fmin(5.0, 0.9 * pow(worst, -0.2)) : worst > 0.0 ? 5.0 : 0.1);
+        i->now.step = h * (worst > 1e-10 ? fmax(0.1, fmin(5.0, 0.9 * pow(worst, -0.2))) : worst > 0.0 ? 5.0 : 0.1);
     }
     return evaluate(i);
 }
@@ -340,6 +341,7 @@ static result directional(UNIT, const fmi${fmi}ValueReference unknowns[], size_t
 {
     instance *i = (instance *)c;
     double direction[VALUES] = {0.0}, way[VALUES], slope[APPLIED], result_slope[RESULTS] = {0.0}, s[VALUES];
+    const char *complaint;
     ${name}_parameters p;
     int status, j;
     size_t k;
@@ -351,6 +353,8 @@ static result directional(UNIT, const fmi${fmi}ValueReference unknowns[], size_t
     for (j = 0; j < VALUES; j++)
         way[j] = direction[j] / value_unit[j];
     convert_units(i, s, &p);
+    if ((complaint = complaint_of(i, &p)))
+        return report(i, ERROR, complaint);
     status = ${name}_slope(&p, s, s + 3, s + 6$at_deflection, way, slope);
     for (j = 0; j < LOADS; j++)
         result_slope[j] = slope[j] * output_unit[j];

@@ -1,4 +1,5 @@
-/* The ball joint $name as a force of OpenSim with friction, rim and outputs, in SI units. Written by ballsocket $version.
+/* The ball joint $name as a force of OpenSim with friction, rim and outputs, in SI units.
+   Written by ballsocket $version.
 
    frame1 is fixed to the socket, at its centre; frame2 to the ball, at its centre. Compile with the headers of the SDK:
 
@@ -43,7 +44,8 @@ private:
     Solution solve(const State& s) const {
         const auto &turn = getFrame1().getTransformInGround(s).R();
         const auto &held = getFrame1().getVelocityInGround(s), &moving = getFrame2().getVelocityInGround(s);
-        const Vec3 arm = getFrame2().getPositionInGround(s) - getFrame1().getPositionInGround(s), w = ~turn * (moving[0] - held[0]);
+        const Vec3 arm = getFrame2().getPositionInGround(s) - getFrame1().getPositionInGround(s);
+        const Vec3 w = ~turn * (moving[0] - held[0]);
         const Vec3 r = 1e3 * (~turn * arm), v = 1e3 * (~turn * (moving[1] - held[1] - held[0] % arm));
         const auto* p = &${name}_defaults;
         Solution found;

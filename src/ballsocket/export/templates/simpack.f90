@@ -34,8 +34,8 @@ subroutine uforce20_type(str_dim, type_name, ierr)
     if (ierr == 0) call spck_df_ForceOvDim(3, ierr)
 end subroutine
 
-subroutine uforce20_setup(task, par_dim, stdyn_dim, ov_dim, str_dim, id, mk_from, mk_to, par, par_type, par_name, par_unit, &
-        stdyn_name, stdyn_unit, ov_name, ov_unit, res_type, stdyn_nr, stroot_nr, strst_type, ierr)
+subroutine uforce20_setup(task, par_dim, stdyn_dim, ov_dim, str_dim, id, mk_from, mk_to, par, par_type, par_name, &
+        par_unit, stdyn_name, stdyn_unit, ov_name, ov_unit, res_type, stdyn_nr, stroot_nr, strst_type, ierr)
     use simpack
     implicit none
     integer, intent(in) :: task, par_dim, stdyn_dim, ov_dim, str_dim, id, mk_from, mk_to
