@@ -188,15 +188,7 @@ class User:
         coming.value.save_as(path)
 
 
-AT_REST = """async () => {
-  const frame = () => new Promise(requestAnimationFrame);
-  const place = document.documentElement;
-  const size = () => `${place.scrollWidth} ${place.scrollHeight}`;
-  for (let same = 0, last = ""; same < 20; await frame()) {
-    [same, last] = size() === last && document.body.dataset.idle === "yes" ? [same + 1, last] : [0, size()];
-  }
-  return place.scrollWidth;
-}"""
+AT_REST = script("at_rest.js")
 """The width of what is on the page, once nothing was asked or changed for twenty frames."""
 
 

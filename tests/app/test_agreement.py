@@ -101,12 +101,7 @@ class Hand:
         return keys
 
 
-_HANDLE = """(share) => {
-  const handles = [...document.querySelectorAll("#press-section [data-drag]")];
-  if (!handles.length) return null;
-  const handle = handles[Math.floor(share * handles.length)], { x, y, width, height } = handle.getBoundingClientRect();
-  return [handle.dataset.drag, { x, y, width, height }];
-}"""
+_HANDLE = script("handle.js")
 _SHOWN = script("shown.js")
 
 

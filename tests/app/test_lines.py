@@ -6,7 +6,7 @@ from urllib.parse import urlsplit
 
 import pytest
 
-from .browser import User, explorer_process, opened_line, opened_profile, opened_proxy, pressure
+from .browser import User, explorer_process, opened_line, opened_profile, opened_proxy, pressure, script
 
 pytestmark = pytest.mark.long
 
@@ -17,23 +17,7 @@ def pressure_of(load, clearance):
     return pressure(force=float(load), clearance=float(clearance) / 2)
 
 
-_RECORD = """() => {
-  window.samples = [];
-  window.longestPause = 0;
-  let last = "", before = performance.now();
-  const box = (name) => document.querySelector(`[data-name="${name}"] input[type=text]`);
-  const look = (moment) => {
-    window.longestPause = Math.max(window.longestPause, moment - before);
-    before = moment;
-    const number = document.querySelector("dd[data-name=max_pressure]"), app = document.querySelector(".app");
-    const mark = app.dataset.lost ? "lost" : app.dataset.updating ? "updating" : number ? "" : "no number";
-    const sample = [box("load")?.value, box("clearance")?.value, mark, number?.dataset.value];
-    if (String(sample) !== last) window.samples.push([moment, ...sample]);
-    last = String(sample);
-    requestAnimationFrame(look);
-  };
-  requestAnimationFrame(look);
-}"""
+_RECORD = script("record.js")
 """Record inputs, headline, and the mark that qualifies it, frame by frame."""
 
 
@@ -85,11 +69,7 @@ def test_a_line_that_is_cut_or_silent_heals_and_never_contradicts(browser, addre
 
 
 _HELD_CLOCK = "performance.now = ((now) => () => window.moment ?? now())(performance.now.bind(performance))"
-_MOVE_CLOCK = """async (moment) => {
-  window.moment = moment;
-  await new Promise((resolve) => setTimeout(resolve, 250)); // more than two ticks of the page
-  return document.body.dataset.lost === "yes";
-}"""
+_MOVE_CLOCK = script("move_clock.js")
 
 
 def test_a_loss_is_seen_after_two_seconds_of_silence_by_the_clock_of_the_page(browser, address):
