@@ -92,7 +92,7 @@ def test_the_python_module_has_the_loads_of_the_element_and_needs_no_package(tmp
 
 
 @needs_compiler
-def test_axes_of_a_socket_in_exudyn_may_be_a_list(tools, tmp_path, monkeypatch):
+def test_axes_of_a_socket_in_exudyn_may_be_a_list(tmp_path, monkeypatch):
     """Exudyn receives the negative load, turned by the axes; its functions used here are stood in for."""
     exudyn, items = ModuleType("exudyn"), ModuleType("exudyn.itemInterface")
     exudyn.OutputVariableType, exudyn.itemInterface, items.ObjectConnectorRigidBodySpringDamper = None, items, dict
