@@ -135,7 +135,7 @@ def _visit(browser: Any, address: str, line: dict[str, Any] | None = None) -> tu
         "Network.webSocketFrameReceived", lambda event: sent.append(len(event["response"]["payloadData"].encode()))
     )
     for kind in ("request", "websocket"):
-        page.on(kind, requests.append)
+        page.on(kind, lambda one: requests.append(one))
     start = time.perf_counter()
     page.goto(address, wait_until="commit", timeout=1e3 * PATIENCE)
     page.locator(READY).first.wait_for(timeout=1e3 * PATIENCE)
