@@ -178,7 +178,10 @@ class Load(NamedTuple):
     @property
     @_without_warnings
     def tangent(self) -> Any:
-        """Tangent stiffness ∂²U/∂r² of the elastic contact in N/mm, a symmetric matrix (3, 3)."""
+        """Tangent stiffness ∂²U/∂r² of the elastic contact in N/mm, a symmetric matrix (3, 3).
+
+        That of a relaxing liner is the derivative of the force at constant relaxed forces.
+        """
         return tangent_matrix(
             type(self.force), formulas.tangent_stiffness(self.centre, self.contact, self.element.constants)
         )

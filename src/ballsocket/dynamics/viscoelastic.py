@@ -115,7 +115,8 @@ def relaxed_contact(
     detached spring of `Viscoelastic.spring_force` does. The stiffness is that at constant relaxed forces, and the
     energy that of the long-time modulus.
     """
-    relaxed = sum((share * force for (share, _), force in zip(modulus.terms, relaxed_forces, strict=True)), 0.0)
+    rows = list(zip(modulus.terms, relaxed_forces, strict=True))
+    relaxed = sum((share * relaxed_force for (share, _), relaxed_force in rows), 0.0)
     detached = relaxed > contact.normal
     instantaneous = where(detached, relaxed, contact.normal)
     force, stiffness = instantaneous - relaxed, where(detached, 0.0, contact.stiffness)
@@ -126,8 +127,7 @@ def relaxed_contact(
         damped_force=force,
         damped_stiffness=stiffness,
     )
-    rates = ((instantaneous - force) / time for (_, time), force in zip(modulus.terms, relaxed_forces, strict=True))
-    return relaxing, tuple(rates)
+    return relaxing, tuple((instantaneous - relaxed_force) / time for (_, time), relaxed_force in rows)
 
 
 @dataclass(frozen=True, eq=False)

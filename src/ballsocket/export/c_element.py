@@ -31,7 +31,7 @@ BEYOND = {
 
 _STATES = {
     "deflection": "Deflections of bristles are in mm, their rates in mm/s.",
-    "relaxed_force": "Relaxed forces of the liner are in N, their rates in N/s.",
+    "relaxed_force": "Relaxed forces are in N, their rates in N/s. The energy is that of the long-time modulus.",
 }
 """Comments on the internal states of an element."""
 

@@ -49,7 +49,7 @@ int ${name}_contact(const ${name}_parameters *p, const double position[3], doubl
    of the exported thickness. */
 int ${name}_valid(const ${name}_parameters *p, const double position[3]);
 
-/* Second derivatives of the energy in N/mm, row by row: minus the derivative of the elastic force. */
+/* Tangent stiffness in N/mm, row by row: minus the derivative of the elastic force, at constant internal states. */
 int ${name}_tangent(const ${name}_parameters *p, const double position[3]$liner, double tangent[9]);
 
 /* Derivatives of force (3), moment (3), energy, half angle and largest pressure along a direction of position, velocity
