@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.dynamics import Bristles, ContactState, Damping, Flores, Friction
+from ballsocket.dynamics import Bristles, ContactState, Damping, Flores, Friction, Prony
 
 from ..extent import either
 from ..joints import HIP
@@ -204,7 +204,11 @@ def test_numbers_and_arrays_of_any_library_agree():
         (((0.0, 0.0, 0.12),), ContactState.CONTACT),
     ],
 )
-@pytest.mark.parametrize("losses", [{}, LOSSY, {"friction": Bristles(coefficient=0.1)}], ids=["none", "lossy", "held"])
+@pytest.mark.parametrize(
+    "losses",
+    [{}, LOSSY, {"friction": Bristles(coefficient=0.1)}, {"relaxation": Prony(terms=((0.3, 0.1),))}],
+    ids=["none", "lossy", "held", "relaxing"],
+)
 def test_status_and_notes_report_states_without_a_result(state, status, losses):
     element = bs.ForceElement(bs.HessForsbach(), HIP, **losses)
     load = element(*state)

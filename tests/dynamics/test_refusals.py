@@ -17,6 +17,7 @@ HELD = replace(PLAIN, friction=dynamics.Bristles(coefficient=0.1))
 OIL = bs.Lubricant(viscosity=0.1, ball_roughness=0.0, cup_roughness=5e-4)
 TIGHT = bs.Joint(ball_radius=13.5, interference=0.03, liner_thickness=2.5, liner=bs.POM, ball=bs.STEEL)
 PRONY = dynamics.Prony(terms=((0.3, 0.1), (0.2, 10.0)))
+RELAXING = replace(PLAIN, relaxation=PRONY)
 LINER = dynamics.Viscoelastic(bs.HessForsbach(), HIP, PRONY)
 TIME = np.linspace(0.0, 2.0, 801)
 STICKY = bs.AdhesiveSocket(work_of_adhesion=2e-3)
@@ -57,6 +58,8 @@ VALUES = [
     (element(bs.AdhesiveSocket(work_of_adhesion=10.0)), "the adhesion number = .* is not allowed: it must be below 1"),
     (lambda: PLAIN((0.0, 1.0)), "a state must have three components"),
     (lambda: HELD((0.0, 0.0, 0.12), deflection=(0.0, 0.0)), "four deflections"),
+    (lambda: RELAXING((0.0, 0.0, 0.12), relaxed_force=(0.0,)), "a relaxing liner must have 2 relaxed forces, got"),
+    (lambda: RELAXING(np.zeros((5, 3)), relaxed_force=np.zeros((5, 3))), "must have 2 relaxed forces"),
     (lambda: PLAIN(np.zeros((5, 2))), r"position .*x, y, z \(mm\)"),
     (lambda: PLAIN(np.zeros((5, 3)), np.zeros((5, 2))), r"velocity .*x, y, z \(mm/s\)"),
     (lambda: PLAIN(np.zeros((5, 3)), np.zeros((5, 3)), np.zeros(4)), r"spin .*x, y, z \(rad/s\)"),
@@ -96,7 +99,11 @@ TYPES = [
     (element(damping=0.3), "damping must be a Damping, got 0.3"),
     (element(lubricant=0.0025), r"lubricant must be a Lubricant, got 0\.0025"),
     (element(STICKY, friction=dynamics.Friction(coefficient=0.1)), "not supported with AdhesiveSocket"),
-    (element(STICKY, lubricant=OIL), "lubricant are not supported with AdhesiveSocket"),
+    (element(STICKY, lubricant=OIL), "lubricant and relaxation are not supported with AdhesiveSocket"),
+    (element(STICKY, relaxation=PRONY), "relaxation are not supported with AdhesiveSocket"),
+    (element(relaxation=((0.3, 0.1),)), "relaxation must be a Prony"),
+    (element(relaxation=PRONY, smoothing=0.01), "cup and smoothing are not supported with relaxation"),
+    (element(relaxation=PRONY, cup=bs.Cup()), "cup and smoothing are not supported with relaxation"),
     (preloaded(model=bs.Exact()), "model must be Sphere"),
     (preloaded(friction=dynamics.Bristles(coefficient=0.1, stiffness=1e3)), "bristles are not supported"),
     (preloaded(damping=0.1), "damping must be Damping"),

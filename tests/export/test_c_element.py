@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import ballsocket as bs
-from ballsocket.dynamics import Bristles, ContactState, Damping, ForceElement, Friction
+from ballsocket.dynamics import Bristles, ContactState, Damping, ForceElement, Friction, Prony
 from ballsocket.export import CElement
 from ballsocket.export.tunable import reason_of_fixed_joint
 from ballsocket.model_catalogue import listed_models, named_model
@@ -225,27 +225,45 @@ def test_the_joint_is_fixed_where_the_law_is_that_of_one_joint():
         assert len(CElement(element=element).tunables) == 7
 
 
-def test_bristles_have_the_load_and_rates_of_the_python_element(tmp_path):
-    bristles = Bristles(coefficient=0.05, static_coefficient=0.08, damping=0.01, viscous=1e-4)
-    element = ForceElement(bs.HessForsbach(), HIP, LOSSES["damping"], bristles, CUP)
-    library, deflection = Library(element, tmp_path), (1e-4, 2e-4, -1e-4, 3e-4)
-    for depth in (-0.01, 1e-4, 0.05):
+BRISTLES = Bristles(coefficient=0.05, static_coefficient=0.08, damping=0.01, viscous=1e-4)
+WITH_STATES = {
+    "bristles": ForceElement(bs.HessForsbach(), HIP, LOSSES["damping"], BRISTLES, CUP),
+    "liner": ForceElement(bs.Tabulated(), HIP, LOSSES["damping"], relaxation=Prony(terms=((0.4, 0.1),))),
+    "both": ForceElement(bs.HessForsbach(), HIP, friction=BRISTLES, relaxation=Prony(terms=((0.3, 0.1), (0.2, 9.0)))),
+}
+
+
+@pytest.mark.parametrize("name", WITH_STATES)
+def test_an_element_with_states_has_the_load_and_rates_of_the_python_element(name, tmp_path):
+    element = WITH_STATES[name]
+    values = {"deflection": (1e-4, 2e-4, -1e-4, 3e-4), "relaxed_force": (300.0, 200.0)}
+    internal = {each: values[each][:count] for each, count in element.internal_states.items()}
+    library, sizes = Library(element, tmp_path), element.internal_states.values()
+    for depth in (-0.01, 1e-4, 0.05):  # at the second depth a relaxed liner does not touch the ball
         distance = HIP.clearance + depth
         state = (0.0, 0.6 * distance, 0.8 * distance), (5.0, 1.0, 20.0), (0.0, 1.0, 2.0)
-        wanted = element(*state, deflection=deflection)
-        found = library._call("load", [*state, deflection], 3, 3, 1, 4)
-        answers = wanted.force, wanted.moment, wanted.energy, wanted.deflection_rate
-        for got, answer in zip(found[1:], answers, strict=True):
+        wanted = element(*state, **internal)
+        found = library._call("load", [*state, *internal.values()], 3, 3, 1, *sizes)
+        rates = (getattr(wanted, f"{each}_rate") for each in internal)
+        for got, answer in zip(found[1:], (wanted.force, wanted.moment, wanted.energy, *rates), strict=True):
             close(got, answer, np.linalg.norm(answer))
-    found = library._call("load", [*state, (np.nan, 0.0, 0.0, 0.0)], 3, 3, 1, 4)
-    assert found[0] == ContactState.NO_NUMBER
-    assert np.isnan(np.concatenate(found[1:])).all()
+        liner = [internal[each] for each in internal if each == "relaxed_force"]
+        close(
+            library._call("tangent", [state[0], *liner], 9)[1], np.ravel(wanted.tangent), np.abs(wanted.tangent).max()
+        )
+    for each, numbers in internal.items():
+        lost = internal | {each: (np.nan, *numbers[1:])}
+        found = library._call("load", [*state, *lost.values()], 3, 3, 1, *sizes)
+        assert found[0] == ContactState.NO_NUMBER
+        assert np.isnan(np.concatenate(found[1:])).all()
 
 
-def test_a_header_explains_bristles_where_there_are_some():
-    for friction, explained in ((Friction(coefficient=0.05), False), (Bristles(coefficient=0.05), True)):
-        header = CElement(element=ForceElement(bs.HessForsbach(), HIP, friction=friction)).header
-        assert ("ristles" in header) == explained
+def test_a_header_explains_the_internal_states_that_it_has():
+    for element in (ForceElement(bs.HessForsbach(), HIP), *WITH_STATES.values()):
+        header = CElement(element=element).header
+        assert ("ristles" in header, "Relaxed forces" in header) == tuple(
+            each in element.internal_states for each in ("deflection", "relaxed_force")
+        )
 
 
 def test_names_are_those_that_c_allows_and_neither_open_nor_close_a_comment():

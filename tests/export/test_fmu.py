@@ -12,7 +12,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import ballsocket as bs
-from ballsocket.dynamics import Bristles, Damping, ForceElement, Friction, simulate
+from ballsocket.dynamics import Bristles, Damping, ForceElement, Friction, Prony, simulate
 from ballsocket.export.compiler import shared_library
 from ballsocket.export.fmu import Fmu, write_cross_check
 from ballsocket.export.fmu.reference_results import reference_loads, states_in_si, trajectory
@@ -323,8 +323,10 @@ def test_a_unit_that_stops_discards_a_step_through_the_wall(tmp_path):
 BALLS = {
     "friction": ForceElement(bs.HessForsbach(), HIP, **LOSSES),
     "bristles": ForceElement(bs.HessForsbach(), HIP, LOSSES["damping"], Bristles(coefficient=0.05)),
+    "relaxing": ForceElement(bs.HessForsbach(), HIP, relaxation=Prony(terms=((0.3, 1e-3), (0.2, 0.01)))),
     "table": ForceElement(bs.Tabulated(), HIP),
 }
+BALLS["bristles, relaxing"] = replace(BALLS["bristles"], relaxation=BALLS["relaxing"].relaxation)
 THROWN = {"mass": 1.0, "velocity": (10.0, 0.0, 0.0), "spin": (0.0, 1.0, 0.0), "pull": (3.0, 0.0, 10.0)}  # kg, mm/s, N
 
 
@@ -337,7 +339,7 @@ def thrown(element):
 
 @needs_compiler
 @pytest.mark.parametrize("version", some(VERSIONS, 1))
-@pytest.mark.parametrize("name", some(BALLS, 2))
+@pytest.mark.parametrize("name", some(BALLS, 3))
 def test_a_ball_inside_moves_as_in_python(name, version, fmpy, tmp_path):
     from fmpy.validation import validate_fmu
 
@@ -359,18 +361,26 @@ def test_a_ball_inside_moves_as_in_python(name, version, fmpy, tmp_path):
 @needs_compiler
 @pytest.mark.parametrize("version", VERSIONS)
 def test_sources_with_states_are_compiled_without_warnings(version, fmpy, tmp_path):
-    for name, mass in (("bristles", None), ("bristles", 1.0), ("friction", 1.0)):
+    for name, mass in (("bristles", None), ("bristles, relaxing", 1.0), ("friction", 1.0)):
         assert_compiles(Fmu(element=BALLS[name], name="hip", version=version, ball_mass=mass), tmp_path, fmpy)
 
 
 @needs_compiler
 @pytest.mark.parametrize("version", VERSIONS)
 def test_derivatives_of_the_rates_of_states_equal_differences(version, tmp_path):
-    host = hosted(tmp_path, element=BALLS["bristles"], name="ball", version=version, ball_mass=0.7)
+    host = hosted(tmp_path, element=BALLS["bristles, relaxing"], name="ball", version=version, ball_mass=0.7)
     start = {"position[3]": 1.2e-4, "position[2]": 1e-5, "velocity[1]": 1e-3, "spin[2]": 2.0, "deflection[1]": 1e-7}
+    start["relaxed_force[2]"] = 200.0
     host.set(**start)
-    rates = [f"der({name})" for name in ("position[1]", "velocity[1]", "spin[2]", "deflection[1]")]
-    steps = {"position[3]": 1e-9, "velocity[1]": 1e-6, "spin[2]": 1e-4, "deflection[1]": 1e-10}
+    states = ("position[1]", "velocity[1]", "spin[2]", "deflection[1]", "relaxed_force[1]", "relaxed_force[2]")
+    rates = [f"der({name})" for name in states]
+    steps = {
+        "position[3]": 1e-9,
+        "velocity[1]": 1e-6,
+        "spin[2]": 1e-4,
+        "deflection[1]": 1e-10,
+        "relaxed_force[2]": 1e-2,
+    }
     for unknown, (known, step) in product((*rates, "force[1]", "spin[2]"), steps.items()):
         status, slope = host.directional(unknown, known)
         assert status == GOOD
@@ -401,12 +411,14 @@ def experiments(path):
 
 
 @needs_compiler
-@pytest.mark.parametrize(("name", "mass"), some([("bristles", None), ("friction", None), ("bristles", 1.0)], 2))
+@pytest.mark.parametrize(
+    ("name", "mass"), some([("bristles, relaxing", None), ("friction", None), ("bristles, relaxing", 1.0)], 2)
+)
 def test_an_archive_has_its_reference_results(name, mass, fmpy, tmp_path):
     path = Fmu(element=BALLS[name], name="hip", ball_mass=mass).write(tmp_path / "hip.fmu").path
     ((times, given, reference),) = experiments(path)
     options = {"stop_time": float(times.get("stopTime")), "output_interval": float(times.get("stepSize"))}
-    kind = "CoSimulation" if name == "bristles" else "ModelExchange"  # of which the other is in the test above
+    kind = "CoSimulation" if "bristles" in name else "ModelExchange"  # of which the other is in the test above
     found = fmpy.simulate_fmu(str(path), fmi_type=kind, input=given, relative_tolerance=1e-10, **options)
     assert list(found["time"]) == pytest.approx(list(reference["time"]))
     for _, group in groupby(reference.dtype.names[1:], key=lambda output: output.partition("[")[0]):
@@ -435,11 +447,11 @@ def test_a_mass_without_a_motion_is_refused(mass):
         Fmu(element=ELEMENT, ball_mass=mass)
 
 
-def test_the_command_writes_a_unit_with_a_ball_and_bristles(tmp_path):
-    options = ("--ball-mass", "2", "--friction", "0.05", "--bristle-stiffness", "200")
+def test_the_command_writes_a_unit_with_a_ball_bristles_and_a_relaxing_liner(tmp_path):
+    options = ("--ball-mass", "2", "--friction", "0.05", "--bristle-stiffness", "200", "--relaxation", "0.3: 1 ms")
     done = run("fmu", "hip-28", "--out", "ball.fmu", *options, folder=tmp_path)
     assert done.stdout.splitlines()[:4] == ["ball.fmu", "ball_in.csv", "ball_ref.csv", "ball_ref.opt"]
     listed = {each.get("name"): each for each in description(tmp_path / "ball.fmu").find("ModelVariables")}
     assert listed["mass"].get("start") == "2.0"
-    assert listed["deflection[4]"].get("causality") == "local"
+    assert listed["deflection[4]"].get("causality") == listed["relaxed_force[1]"].get("causality") == "local"
     assert "StopTime, 0.0282" in (tmp_path / "ball_ref.opt").read_text()  # 20 ms times the root of the mass in kg

@@ -15,7 +15,7 @@ from numpy.testing import assert_allclose
 
 import ballsocket as bs
 from ballsocket.cli.export import ForceElementInputs, identifier
-from ballsocket.dynamics import Bristles, ContactState, Damping, ForceElement, Friction
+from ballsocket.dynamics import Bristles, ContactState, Damping, ForceElement, Friction, Prony
 from ballsocket.export import TARGETS, CElement, ExportJob
 from ballsocket.export.compiler import LIBRARY_ENDING, shared_library
 from ballsocket.export.law_fit import expression_fit, fit_depth, power_fit
@@ -437,14 +437,17 @@ def test_elements_with_a_state_are_refused_by_programs_that_cannot_represent_it(
     with pytest.raises(ValueError, match="an adhesive ball has a state; "):
         CElement(element=adhesive)
     bristles = ForceElement(bs.HessForsbach(), HIP, friction=Bristles(coefficient=0.05))
-    job = ExportJob(element=bristles, name="hip", depth=0.1)
-    assert "hip.c" in TARGETS["c"].file_texts(job)
-    for name in TARGETS.keys() - {"c"}:
-        with pytest.raises(ValueError, match=f"bristles have a state, which {name} cannot represent"):
-            TARGETS[name].file_texts(job)
-    for element, said in ((adhesive, "an adhesive ball has a state; "), (bristles, "bristles have a state; ")):
-        with pytest.raises(ValueError, match=said):
-            pytest.importorskip("ballsocket.dynamics.compiled").CompiledElement(element)
+    relaxing = ForceElement(bs.HessForsbach(), HIP, relaxation=Prony(terms=((0.3, 0.1),)))
+    for element, note in ((bristles, "bristles have a state"), (relaxing, "a relaxing liner has a state")):
+        job = ExportJob(element=element, name="hip", depth=0.1)
+        assert "hip.c" in TARGETS["c"].file_texts(job)
+        for name in TARGETS.keys() - {"c"}:
+            with pytest.raises(ValueError, match=f"{note}, which {name} cannot represent"):
+                TARGETS[name].file_texts(job)
+    compiled = pytest.importorskip("ballsocket.dynamics.compiled")
+    for element in (adhesive, bristles, relaxing):
+        with pytest.raises(ValueError, match="ha(s|ve) a state; "):
+            compiled.CompiledElement(element)
 
 
 @pytest.mark.long
@@ -482,6 +485,8 @@ def test_the_advised_time_step_keeps_the_energy_of_a_bounce_and_an_unstable_one_
     advice = ExportJob(element=PLAIN, name="hip", depth=0.05, mass=2.0).time_steps
     energy, _, stiffness = PLAIN.potential(0.05)
     assert_allclose(advice.stable, 2.0 * sqrt(2e-3 / stiffness), rtol=1e-12)
+    relaxing = replace(PLAIN, relaxation=Prony(terms=((0.3, 1.0), (0.2, 1e-6))))
+    assert ExportJob(element=relaxing, name="hip", depth=0.05).time_steps.stable == 2e-6  # twice the shortest time
 
     def energy_change(step, start):
         depth, speed = start * step, sqrt(2.0 * energy / 2e-3)

@@ -5,23 +5,25 @@ from __future__ import annotations
 import keyword
 import re
 import sys
+from collections.abc import Mapping
 from dataclasses import replace
 from math import radians
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 import typer
 
-from ..core.checks import known_name
+from ..core.checks import check_text, known_name
+from ..core.kinds import Kind
 from ..core.storage.atomic_files import check_ending
-from ..dynamics import Bristles, Damping, ForceElement, Friction, PreloadedElement, Restitution
+from ..dynamics import Bristles, Damping, ForceElement, Friction, PreloadedElement, Prony, Restitution
 from ..elasticity.off_axis.model import Sphere
 from ..export import TARGETS, ExportJob
 from ..files.joint_file import JointFile
 from ..files.joint_options import JOINT, PARTS
-from ..files.schema import FileTable, Length, PlainNumber, Speed, Viscosity, meaning
+from ..files.schema import FileTable, Length, Parsed, PlainNumber, Speed, Viscosity, meaning
 from ..files.tables import written_in
-from ..files.units import as_given
+from ..files.units import as_given, parse
 from ..lubrication import Lubricant
 from ..model_catalogue import OFF_AXIS, reference, with_gap
 from ..problem.cup import AXIAL_TILT, Cup
@@ -35,6 +37,19 @@ from .root import app, echo_path, print_message
 
 _RING_WIDTH = radians(3.0)  # width of the rings that tabulate a preloaded joint, in rad
 _NOTED_ERROR = 0.02  # relative error of the force of a preloaded element above which a message states it
+
+
+class PronyTerms(Parsed):
+    """Prony series of a relaxing liner: pairs of share and time, such as "0.3: 0.1 s, 0.2: 10 s"."""
+
+    schema: ClassVar[Mapping[str, Any]] = {"type": "string", "maxLength": 1000}
+
+    @classmethod
+    def parse(cls, name: str, value: Any) -> Prony:
+        pairs = [text.partition(":") for text in check_text(name, value).split(",")]
+        return Prony(
+            terms=tuple((parse(name, share, Kind.NUMBER), parse(name, time, Kind.DURATION)) for share, _, time in pairs)
+        )
 
 
 class ForceElementInputs(FileTable, frozen=True, kw_only=True):
@@ -57,6 +72,14 @@ class ForceElementInputs(FileTable, frozen=True, kw_only=True):
     friction: Annotated[PlainNumber | None, meaning("coefficient of friction", default="no friction")] = None
     bristle_stiffness: Annotated[
         PlainNumber | None, meaning("stiffness of bristles in 1/mm, for --friction with a state", default="no bristles")
+    ] = None
+    relaxation: Annotated[
+        PronyTerms | None,
+        meaning(
+            "shares of the liner's modulus that relax, with their times; its modulus is then the instantaneous one",
+            example="0.3: 0.1 s, 0.2: 10 s",
+            default="an elastic liner",
+        ),
     ] = None
     viscosity: Annotated[
         Viscosity | None, meaning("viscosity of a lubricant", example="2.5 mPa s", default="a dry socket")
@@ -90,7 +113,8 @@ class ForceElementInputs(FileTable, frozen=True, kw_only=True):
         damping = self._damping()
         try:
             smoothing = float(self.smoothing or 0.0)
-            return ForceElement(model, file.joint, damping, friction, cup, smoothing, lubricant)
+            relaxation = None if self.relaxation is None else self.relaxation.value
+            return ForceElement(model, file.joint, damping, friction, cup, smoothing, lubricant, relaxation=relaxation)
         except TypeError as error:  # the model has no force law
             raise ValueError(str(error)) from error
 
@@ -102,6 +126,8 @@ class ForceElementInputs(FileTable, frozen=True, kw_only=True):
             raise ValueError(f"the model {name} does not solve a preloaded joint: use {OFF_AXIS}")
         if isinstance(friction, Bristles):
             raise ValueError("a preloaded joint has no bristles: omit --bristle-stiffness")
+        if self.relaxation is not None:
+            raise ValueError("the liner of a preloaded joint does not relax: omit --relaxation")
         if self.viscosity is not None:
             raise ValueError("a preloaded joint has no clearance for the film of a lubricant: omit --viscosity")
         if self.smoothing is not None:

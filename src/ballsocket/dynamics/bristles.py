@@ -17,6 +17,7 @@ from .friction import (
 )
 from .reaction import Sliding, versine
 
+DEFLECTIONS = 4  # number of deflections
 Deflections = tuple[Array, Array, Array, Array]
 """Deflections of the bristles in mm: x, y and z across the load, and the arc at the lever ρ about the load."""
 

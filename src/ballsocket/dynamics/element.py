@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import inf
@@ -24,27 +25,30 @@ from ..models.adhesion import AdhesiveSocket
 from ..problem import Joint
 from ..problem.cup import Cup
 from .ball_centre import BallCentre, Constants, Vector, ball_centre_at
-from .bristles import Bristles
+from .bristles import DEFLECTIONS, Bristles
 from .damping import Damping
 from .film import film_constants
 from .friction import Friction
-from .load import Load, add_bristle_loads
+from .load import Load, add_bristle_loads, split_internal_state, vector_components
 from .matrices import join_vector
 from .potential import Potential, adhesion_potential, evaluate_curve, potential_of
-from .reaction import NO_CONTACT, elastic_contact, force_and_moment, remove_tension_damping
+from .reaction import NO_CONTACT, Elastic, elastic_contact, force_and_moment, remove_tension_damping
+from .viscoelastic import Prony, relaxed_contact
 
 _log = logging.getLogger("ballsocket.dynamics")
 
 _DEPTHS = 129  # number of indentations at which validity is evaluated
 
 _ZERO_VECTOR = (0.0, 0.0, 0.0)
-_ZERO_DEFLECTION = (0.0, 0.0, 0.0, 0.0)
+_ZERO_DEFLECTION = (0.0,) * DEFLECTIONS
+_STATE_NOTES = {"deflection": "bristles have a state", "relaxed_force": "a relaxing liner has a state"}
 _PARTS: dict[str, Any] = {
     "model": Model,
     "damping": Damping,
     "friction": Friction | Bristles,
     "cup": Cup,
     "lubricant": Lubricant,
+    "relaxation": Prony,
 }
 """Types of the parts of a force element by their names."""
 
@@ -78,6 +82,11 @@ class ForceElement(OneLine):
     film_tension : float
         Largest tension of the lubricant in MPa, above 0, for a ball that leaves the wall: about 0.1 for a fluid at
         atmospheric pressure, which cavitates. Infinite, the default, is Reynolds' equation without cavitation.
+    relaxation : Prony, optional
+        Relaxing liner, whose instantaneous modulus is that of the joint. Each term has a relaxed force, an argument of
+        each call. The force is exact while the contact grows at one place of the socket (Lee & Radok). While it
+        shrinks, the same integral ends at zero force; Ting's force, `Viscoelastic.cycle_force`, is larger. Half angle
+        and pressure are those of the instantaneous modulus. None, the default, is an elastic liner.
 
     Raises
     ------
@@ -108,6 +117,7 @@ class ForceElement(OneLine):
     smoothing: float = 0.0
     lubricant: Lubricant | None = None
     film_tension: float = inf
+    relaxation: Prony | None = None
     potential: Potential = field(init=False, repr=False)
     constants: Constants = field(init=False, repr=False)
 
@@ -122,10 +132,12 @@ class ForceElement(OneLine):
         smoothing = check_number("smoothing", self.smoothing)
         if not isinstance(self.model, AdhesiveSocket):
             potential = potential_of(self.model, self.joint)
-        elif self.friction or self.cup or self.smoothing or self.lubricant:
-            raise TypeError("friction, cup, smoothing and lubricant are not supported with AdhesiveSocket")
+        elif self.friction or self.cup or self.smoothing or self.lubricant or self.relaxation:
+            raise TypeError("friction, cup, smoothing, lubricant and relaxation are not supported with AdhesiveSocket")
         else:
             potential = adhesion_potential(self.model, self.joint)
+        if self.relaxation and (self.cup or self.smoothing):
+            raise TypeError("cup and smoothing are not supported with relaxation")
         clearance = float(self.joint.clearance)
         valid = 0.0 <= smoothing <= clearance
         require("smoothing", smoothing, valid, f"it must be between 0 and the clearance, {clearance:g} mm")
@@ -143,12 +155,18 @@ class ForceElement(OneLine):
         """Stretch u_c in mm of a spring at which an adhesive ball separates; 0 for other models."""
         return getattr(self.potential, "stretch", 0.0)
 
+    @cached_property
+    def internal_states(self) -> Mapping[str, int]:
+        """Numbers of components of the internal states with rates: `deflection` of bristles, `relaxed_force`."""
+        deflections = {"deflection": DEFLECTIONS} if isinstance(self.friction, Bristles) else {}
+        return deflections | ({"relaxed_force": len(self.relaxation.terms)} if self.relaxation else {})
+
     @property
     def internal_state(self) -> str:
-        """Note on the internal state of the contact (bristles or adhesion); empty without one."""
-        if isinstance(self.friction, Bristles):
-            return "bristles have a state"
-        return "an adhesive ball has a state" if self.stretch > 0.0 else ""
+        """Note on the internal state of the contact (bristles, relaxation or adhesion); empty without one."""
+        if self.stretch > 0.0:
+            return "an adhesive ball has a state"
+        return " and ".join(_STATE_NOTES[name] for name in self.internal_states)
 
     def _collect_constants(self, smoothing: float) -> Constants:
         joint, cup = self.joint.with_floats(), self.cup
@@ -174,6 +192,7 @@ class ForceElement(OneLine):
         spin: Any = _ZERO_VECTOR,
         deflection: Any = _ZERO_DEFLECTION,
         attached: Any = False,
+        relaxed_force: Any = None,
     ) -> Load:
         """Compute force, moment and energy at a state of the ball, with axes fixed to the socket.
 
@@ -190,47 +209,82 @@ class ForceElement(OneLine):
             Deflections of the bristles in mm: the integral of the `deflection_rate` of the load.
         attached : bool or array
             True for an adhesive ball that was attached: `attached` of the previous load.
+        relaxed_force : (terms,) or array (..., terms)
+            Relaxed forces of the liner in N: the integral of the `relaxed_force_rate` of the load. None, the default,
+            is a liner that has not relaxed.
 
         Raises
         ------
         ValueError
-            A vector without three components.
+            A vector without three components; an internal state with a wrong number of components.
         """
         if is_one_vector(position):
-            load = self._load_of_numbers(components(position), components(velocity), components(spin), attached)
+            motion = components(position), components(velocity), components(spin)
+            load = self._load_of_numbers(*motion, attached, relaxed_force)
         else:
-            load = self._load_of_arrays(position, velocity, spin, attached)
+            load = self._load_of_arrays(position, velocity, spin, attached, relaxed_force)
         if not isinstance(self.friction, Bristles):
             return load
         with numpy.errstate(all="ignore"):
             return add_bristle_loads(load, self.friction, deflection)
 
-    def _load_of_numbers(self, position: Vector, velocity: Vector, spin: Vector, attached: bool) -> Load:
+    def _load_of_numbers(
+        self, position: Vector, velocity: Vector, spin: Vector, attached: bool, relaxed_force: Any
+    ) -> Load:
         constants = self.constants
         centre = ball_centre_at(*position, constants.clearance)
         is_adhesive = self.stretch > 0.0
         if is_adhesive:
             centre = self._centre_if_attached(centre, attached)
-        if centre.indentation <= -constants.smoothing and centre.distance > 0.0 and constants.film_damping == 0.0:
+        is_free = centre.indentation <= -constants.smoothing and centre.distance > 0.0
+        if is_free and constants.film_damping == 0.0 and self.relaxation is None:
             return Load(_ZERO_VECTOR, _ZERO_VECTOR, 0.0, self, centre, NO_CONTACT, position, velocity, spin)
         if centre.indentation > self._validity_monitor.limit:
             self._validity_monitor.check(centre.indentation)
         contact = elastic_contact(self.potential, centre, constants)
         if is_adhesive:
             contact = remove_tension_damping(contact)
+        contact, liner = self._relax(contact, relaxed_force)
         fx, fy, fz, mx, my, mz = force_and_moment(centre, contact, velocity, spin, constants)
-        return Load((fx, fy, fz), (mx, my, mz), contact.energy, self, centre, contact, position, velocity, spin)
+        force, moment = (fx, fy, fz), (mx, my, mz)
+        return Load(force, moment, contact.energy, self, centre, contact, position, velocity, spin, **liner)
 
-    def _load_of_arrays(self, position: Any, velocity: Any, spin: Any, attached: Any) -> Load:
+    def _load_of_arrays(self, position: Any, velocity: Any, spin: Any, attached: Any, relaxed_force: Any) -> Load:
         r, v, w = split_states(position, velocity, spin)
         with numpy.errstate(all="ignore"):  # states without a result have a status
             centre = self._centre_if_attached(ball_centre_at(*r, self.constants.clearance), attached)
             self._validity_monitor.check_array(centre.indentation)
             contact = elastic_contact(self.potential, centre, self.constants)
             contact = remove_tension_damping(contact) if self.stretch > 0.0 else contact
+            contact, liner = self._relax(contact, relaxed_force, r[0])
             loads = force_and_moment(centre, contact, v, w, self.constants)
         force, moment = join_vector(object, *loads[:3]), join_vector(object, *loads[3:])
-        return Load(force, moment, contact.energy, self, centre, contact, r, v, w)
+        return Load(force, moment, contact.energy, self, centre, contact, r, v, w, **liner)
+
+    def _relax(self, contact: Elastic, relaxed_force: Any, like: Any = None) -> tuple[Elastic, dict[str, Any]]:
+        """Return the contact of a relaxing liner, and its fields of the load; `like` is an array, None for numbers."""
+        if self.relaxation is None:
+            return contact, {}
+        count = len(self.relaxation.terms)
+        given = (0.0,) * count if relaxed_force is None else relaxed_force
+        relaxed_forces = split_internal_state(given, count, like, f"a relaxing liner must have {count} relaxed forces")
+        contact, rates = relaxed_contact(contact, relaxed_forces, self.relaxation)
+        kind = tuple if like is None else object
+        return contact, {"relaxed_forces": relaxed_forces, "relaxed_force_rate": join_vector(kind, *rates)}
+
+    def relaxation_loss(self, load: Load) -> Array:
+        """Compute the power in N mm/s that the relaxing liner dissipates; 0 for an elastic one.
+
+        It is Σ g_i s_i' (d(E) - d(s_i)) with the indentation d(F) of the instantaneous law, see `relaxed_contact`.
+        """
+        if self.relaxation is None:
+            return 0.0
+        joint, terms = self.joint.with_floats(), self.relaxation.terms
+        relaxed, rates = load.relaxed_forces, vector_components(load.relaxed_force_rate)
+        forces = (relaxed[0] + terms[0][1] * rates[0], *relaxed)  # E and s_i; states without a load have no number
+        depth, *depths = (self.model.press(joint, force=where(force > 0.0, force, 0.0)).indentation for force in forces)
+        rows = zip(terms, rates, depths, strict=True)
+        return sum((share * rate * (depth - relaxed_depth) for (share, _), rate, relaxed_depth in rows), 0.0)
 
     def _centre_if_attached(self, centre: BallCentre, attached: Any) -> BallCentre:
         """Return the ball centre; an adhesive ball that is not attached gets a negative indentation.
@@ -310,6 +364,21 @@ def split_states(position: Any, velocity: Any, spin: Any) -> tuple[Vector, Vecto
         vectors.append(check_vectors(name, value, axes))
     r, v, w = ((vector[..., 0], vector[..., 1], vector[..., 2]) for vector in to_common_arrays(*vectors))
     return r, v, w
+
+
+def state_arguments(element: Any, state: Any) -> dict[str, Any]:
+    """Split the motion and the internal states of an element by its arguments: a list, or an array (..., 9 + n)."""
+    arguments, first = {}, 0
+    for name, count in {"position": 3, "velocity": 3, "spin": 3, **element.internal_states}.items():
+        part = slice(first, first + count)
+        arguments[name] = state[part] if type(state) is list else state[..., part]
+        first += count
+    return arguments
+
+
+def internal_rates(load: Any) -> list[float]:
+    """List the rates of the internal states of a load at one state, in the order of `internal_states`."""
+    return [rate for name in load.element.internal_states for rate in getattr(load, f"{name}_rate")]
 
 
 def loss_constants(damping: Damping | None, friction: Friction | None) -> dict[str, float]:

@@ -15,7 +15,7 @@ from ..core.arrays import Array, sqrt, to_list, where
 from ..core.checks import shown
 from . import reaction as formulas
 from .ball_centre import BallCentre, Constants, Vector
-from .bristles import Bristles, Deflections, bristle_forces
+from .bristles import DEFLECTIONS, Bristles, bristle_forces
 from .film import film_thickness, squeeze_pressure
 from .matrices import damping_matrix, join_matrix, join_vector
 from .reaction import Elastic, normal_force, sliding_state
@@ -64,6 +64,7 @@ class LoadedElement(Protocol):
     def stretch(self) -> float: ...
     @property
     def wall(self) -> float: ...
+    def relaxation_loss(self, load: Load) -> Array: ...
     def half_angle(self, indentation: Array) -> Array: ...
     def max_pressure(self, indentation: Array) -> Array: ...
 
@@ -91,11 +92,15 @@ class Load(NamedTuple):
     moment : (3,)
         Moment on the ball about its centre in N mm.
     energy : float or array
-        Elastic energy of the contact in N mm.
+        Elastic energy of the contact in N mm; of a relaxing liner that of its long-time modulus.
     deflection_rate : (4,)
         Rate of the bristle deflections in mm/s.
     bristle_dissipation : float or array
         Power dissipated by the bristles in N mm/s.
+    relaxed_forces : tuple
+        Relaxed forces of the liner in N, one for each of its terms.
+    relaxed_force_rate : (terms,)
+        Rate of the relaxed forces in N/s.
     """
 
     force: Any
@@ -109,6 +114,8 @@ class Load(NamedTuple):
     spin: Vector
     deflection_rate: Any = (0.0, 0.0, 0.0, 0.0)
     bristle_dissipation: Array = 0.0
+    relaxed_forces: tuple[Array, ...] = ()
+    relaxed_force_rate: Any = ()
 
     def __repr__(self) -> str:
         return f"<Load {self}>"
@@ -119,13 +126,13 @@ class Load(NamedTuple):
     @property
     def socket_force(self) -> Any:
         """Force on the socket in N."""
-        return join_vector(type(self.force), *(-part for part in _vector_components(self.force)))
+        return join_vector(type(self.force), *(-part for part in vector_components(self.force)))
 
     @property
     @_without_warnings
     def socket_moment(self) -> Any:
         """Moment on the socket about its centre in N mm: -M - r x F."""
-        (fx, fy, fz), (mx, my, mz) = _vector_components(self.force), _vector_components(self.moment)
+        (fx, fy, fz), (mx, my, mz) = vector_components(self.force), vector_components(self.moment)
         x, y, z = self.position
         moment = -mx - y * fz + z * fy, -my - z * fx + x * fz, -mz - x * fy + y * fx
         return join_vector(type(self.force), *moment)
@@ -171,7 +178,10 @@ class Load(NamedTuple):
     @property
     @_without_warnings
     def tangent(self) -> Any:
-        """Tangent stiffness ∂²U/∂r² of the elastic contact in N/mm, a symmetric matrix (3, 3)."""
+        """Tangent stiffness ∂²U/∂r² of the elastic contact in N/mm, a symmetric matrix (3, 3).
+
+        That of a relaxing liner is the derivative of the force at constant relaxed forces.
+        """
         return tangent_matrix(
             type(self.force), formulas.tangent_stiffness(self.centre, self.contact, self.element.constants)
         )
@@ -187,13 +197,15 @@ class Load(NamedTuple):
     def dissipation(self) -> Array:
         """Dissipated power in N mm/s, 0 or more."""
         state = self.centre, self.contact, self.velocity, self.spin
-        return formulas.dissipation(*state, self.element.constants) + self.bristle_dissipation
+        losses = self.bristle_dissipation + self.element.relaxation_loss(self)
+        return formulas.dissipation(*state, self.element.constants) + losses
 
     @property
     @_without_warnings
     def status(self) -> ContactState | Array:
         """State of the contact (free, contact, at the rim, ...): a `ContactState`, or an array of its codes."""
-        state = *self.position, *self.velocity, *self.spin, *_vector_components(self.deflection_rate, 4)
+        internal = *vector_components(self.deflection_rate), *self.relaxed_forces
+        state = *self.position, *self.velocity, *self.spin, *internal
         return contact_state_of(self.centre, self.contact, is_finite_state(state), self.element.constants)
 
     def summary(self) -> dict[str, Any]:
@@ -263,11 +275,14 @@ def add_bristle_loads(load: Load, bristles: Bristles, deflection: Any) -> Load:
     centre, constants, kind = load.centre, load.element.constants, type(load.force)
     speed = sum(rate * component for rate, component in zip(load.velocity, centre[1:4], strict=True))
     slip = sliding_state(centre, normal_force(load.contact, speed, constants), load.velocity, load.spin, constants)
-    force, rate, dissipated = bristle_forces(centre, slip, _split_deflections(load, deflection), bristles)
+    like = None if kind is tuple else load.force
+    allowed = "bristles must have four deflections, x, y, z and about the load"
+    deflections = split_internal_state(deflection, DEFLECTIONS, like, allowed)
+    force, rate, dissipated = bristle_forces(centre, slip, deflections, bristles)
     N, R1, (nx, ny, nz) = slip.normal, constants.ball_radius, centre[1:4]
     fx, fy, fz = (-N * part for part in force[:3])
     drilling_moment = -N * sqrt(slip.lever_squared) * force[3]
-    (gx, gy, gz), (mx, my, mz) = _vector_components(load.force), _vector_components(load.moment)
+    (gx, gy, gz), (mx, my, mz) = vector_components(load.force), vector_components(load.moment)
     return load._replace(
         force=join_vector(kind, gx + fx, gy + fy, gz + fz),
         moment=join_vector(
@@ -281,20 +296,22 @@ def add_bristle_loads(load: Load, bristles: Bristles, deflection: Any) -> Load:
     )
 
 
-def _split_deflections(load: Load, deflection: Any) -> Deflections:
-    """Split bristle deflections into four components; raise ValueError for another number."""
-    if type(load.force) is not tuple and type(deflection) in (tuple, list):
-        deflection = numpy.asarray(deflection, dtype=float)
-        deflection = arrays.namespace(load.force).asarray(deflection, dtype=load.force.dtype)
-    parts = tuple(deflection) if type(deflection) in (tuple, list) else tuple(deflection[..., i] for i in range(4))
-    if len(parts) != 4:
-        raise ValueError(f"bristles must have four deflections, x, y, z and about the load, got {shown(deflection)}")
-    a, b, c, d = (part + 0.0 for part in parts)
-    return a, b, c, d
+def split_internal_state(state: Any, count: int, like: Any, allowed: str) -> tuple[Array, ...]:
+    """Split an internal state into components: numbers if `like` is None, otherwise arrays of its library.
+
+    Raises ValueError, which begins with `allowed`: another number of components than `count`.
+    """
+    if like is not None and type(state) in (tuple, list):
+        state = arrays.namespace(like).asarray(numpy.asarray(state, dtype=float), dtype=like.dtype)
+    parts = vector_components(tuple(state) if type(state) is list else state)
+    if len(parts) != count:
+        raise ValueError(f"{allowed}, got {shown(state)}")
+    return tuple(part + 0.0 for part in parts)
 
 
-def _vector_components(packed: Any, count: int = 3) -> Any:
-    return packed if type(packed) is tuple else [packed[..., axis] for axis in range(count)]
+def vector_components(packed: Any) -> Any:
+    """Return the components of a vector, a tuple or an array (..., components)."""
+    return packed if type(packed) is tuple else [packed[..., axis] for axis in range(packed.shape[-1])]
 
 
 def is_finite_state(components: Any) -> Array:

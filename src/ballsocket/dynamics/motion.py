@@ -24,9 +24,9 @@ TONNE = 1e-3  # tonnes in a kilogram: N, mm, s and t form a consistent system
 class Motion(Record):
     """Simulated motion of a ball over time.
 
-    Without bristles and adhesion it is computed by a method of order 2: errors of positions and phases fall with the
-    square of the step, see `position_error`. Energy and angular momentum are conserved to rounding at any step, see
-    `drift` and `angular_drift`.
+    Without an internal state (bristles, relaxation, adhesion) it is computed by a method of order 2: errors of
+    positions and phases fall with the square of the step, see `position_error`. Energy and angular momentum are
+    conserved to rounding at any step, see `drift` and `angular_drift`.
 
     Attributes
     ----------
@@ -38,21 +38,24 @@ class Motion(Record):
     position, velocity, spin : array (steps, 3)
         Position in mm, velocity in mm/s and angular velocity in rad/s.
     energy : array (steps,)
-        Elastic energy of the contact in N mm.
+        Elastic energy of the contact in N mm; of a relaxing liner that of its long-time modulus.
     dissipated_energy : array (steps,)
-        Energy dissipated by damping and friction since the beginning in N mm, with that stored in bristles.
+        Energy dissipated by damping, friction and relaxation since the beginning in N mm, with that stored in bristles
+        and in the terms of a relaxing liner.
     work : array (steps,)
         Work of the pull on the ball since the beginning in N mm.
     pull_moment : array (steps, 3) or None
-        Integral of the moment r x pull over the time in N mm s. None with bristles or adhesion.
+        Integral of the moment r x pull over the time in N mm s. None with an internal state.
     deflection : array (steps, 4), or four numbers
         Deflections of bristles in mm.
     attached : array (steps,) or bool
         True for an attached adhesive ball.
+    relaxed_force : array (steps, terms) or None
+        Relaxed forces of the liner in N. None without relaxation.
     end_reason : str
         Reason for an early end, with the state; empty for a complete motion.
     repeat : function or None
-        Repeats the motion with another `step` in s. None with bristles or adhesion, and for an early end.
+        Repeats the motion with another `step` in s. None with an internal state, and for an early end.
     """
 
     sources: ClassVar[tuple[Source, ...]] = (Source("gonzalez1996"),)
@@ -70,6 +73,7 @@ class Motion(Record):
     pull_moment: Numbers | None = None
     deflection: Any = (0.0, 0.0, 0.0, 0.0)
     attached: Any = False
+    relaxed_force: Any = None
     end_reason: str = ""
     repeat: Callable[..., Motion] | None = None
 
@@ -91,7 +95,8 @@ class Motion(Record):
     @cached_property
     def load(self) -> Load:
         """Contact load at each time, computed from the states of the ball."""
-        return self.element(self.position, self.velocity, self.spin, self.deflection, self.attached)
+        motion = self.position, self.velocity, self.spin
+        return self.element(*motion, self.deflection, self.attached, self.relaxed_force)
 
     @cached_property
     def kinetic_energy(self) -> Numbers:

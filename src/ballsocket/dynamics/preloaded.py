@@ -8,10 +8,11 @@ U is a quadratic form in s. The force is the gradient of U, so that no cycle gai
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import inf, pi
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy
 
@@ -429,6 +430,7 @@ class PreloadedElement(OneLine):
         return "; ".join([f"{self.model.name} on {self.joint.name or self.joint.dimensions}", *named])
 
     internal_state = ""
+    internal_states: ClassVar[Mapping[str, int]] = {}
     stretch = 0.0
 
     @property

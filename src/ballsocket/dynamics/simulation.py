@@ -14,7 +14,7 @@ from ..core.arrays import Numbers
 from ..core.checks import check_number, require, shown
 from . import stepping
 from .ball_centre import Vector
-from .element import ForceElement, components
+from .element import ForceElement, components, internal_rates, state_arguments
 from .load import ContactState, Load
 from .motion import TONNE, Motion
 from .stepping import BallState
@@ -35,8 +35,8 @@ def simulate(
     """Simulate a ball in a fixed socket, by time steps that conserve energy and angular momentum.
 
     The method is of order 2: halving the step divides the errors of positions and phases by four. Conserved energy
-    does not bound these errors; `position_error` of the motion estimates them. Bristles and adhesion have a state;
-    with them the motion is integrated by LSODA, with a tolerance of 1e-10.
+    does not bound these errors; `position_error` of the motion estimates them. Bristles, a relaxing liner and adhesion
+    have a state; with them the motion is integrated by LSODA, with a tolerance of 1e-10.
 
     Parameters
     ----------
@@ -149,10 +149,9 @@ def _march(
 def _integrate_contact_state(
     element: ForceElement, h: float, count: int, *, mass: float, inertia: float, initial: Any, pull: Any
 ) -> tuple[Numbers, dict[str, Any]]:
-    """Integrate the motion with bristles or adhesion by LSODA; return the states and further fields of the motion."""
+    """Integrate the motion with an internal state by LSODA; return the states and further fields of the motion."""
     integrator = StatefulIntegrator(element=element, mass=mass, inertia=inertia, pull=pull_function(pull))
-    state, end_reason = numpy.zeros(_STATE_SIZE), ""
-    state[:9] = initial
+    state, end_reason = numpy.array([*initial, *(0.0,) * sum(element.internal_states.values()), 0.0, 0.0]), ""
     states, attachments = [state], [integrator.is_touching(state)]
     try:
         for next_state, attached in integrator.iterate_states(state, h * numpy.arange(count + 1), h):
@@ -161,10 +160,11 @@ def _integrate_contact_state(
     except _NoLoad as error:
         end_reason = f"after {h * (len(states) - 1):g} s: {str(error) or 'the integration failed'}"
     results = numpy.array(states)
+    parts = state_arguments(element, results[:, :-2])
     return results[:, :9], {
-        "dissipated_energy": results[:, 13],
-        "work": results[:, 14],
-        "deflection": results[:, 9:13],
+        "dissipated_energy": results[:, -2],
+        "work": results[:, -1],
+        **{name: parts[name] for name in element.internal_states},
         "attached": numpy.array(attachments),
         "end_reason": end_reason,
     }
@@ -193,9 +193,6 @@ def _check_positive_number(name: str, value: Any) -> float:
 
 _TOLERANCE = 1e-10  # relative and absolute tolerance of the integration
 
-_STATE_SIZE = 15
-"""Number of unknowns: position, velocity, spin, four deflections, dissipated energy, and the work of the pull."""
-
 
 class _NoLoad(ArithmeticError):  # noqa: N818 - it ends the integration, and no caller sees it
     """Error at a state of the ball that has no load; its message has the notes of the load, or is empty."""
@@ -206,7 +203,11 @@ class _NoLoad(ArithmeticError):  # noqa: N818 - it ends the integration, and no 
 
 @dataclass(frozen=True, kw_only=True)
 class StatefulIntegrator:
-    """Time integrator for a ball with an internal contact state; `pull` in N is a function of the time in s."""
+    """Time integrator for a ball with an internal contact state; `pull` in N is a function of the time in s.
+
+    The unknowns are position, velocity, spin, the internal states with rates, the dissipated energy, and the work of
+    the pull.
+    """
 
     element: ForceElement
     mass: float  # in t
@@ -239,7 +240,7 @@ class StatefulIntegrator:
                     time, state, attached = switch_time, interpolant(switch_time), not attached
                     break
             if attached and switch_time < inf:  # the jump of the energy is dissipated
-                state[13] -= self._load_at(state, attached).energy
+                state[-2] -= self._load_at(state, attached).energy
 
     def _equations_of_motion(self, attached: bool) -> Callable[[float, Numbers], list[float]]:
         """Make the right-hand side of the equations of motion, for an attached or a separate ball."""
@@ -250,14 +251,24 @@ class StatefulIntegrator:
                 raise _NoLoad(load)
             acceleration = [(a + b) / self.mass for a, b in zip(load.force, pull, strict=True)]
             angular_acceleration = [a / self.inertia for a in load.moment]
-            powers = _dissipated_power(load), _dot_product(pull, load.velocity)
-            return [*load.velocity, *acceleration, *angular_acceleration, *load.deflection_rate, *powers]
+            powers = self._dissipated_power(load), _dot_product(pull, load.velocity)
+            return [*load.velocity, *acceleration, *angular_acceleration, *internal_rates(load), *powers]
 
         return time_derivatives
 
     def _load_at(self, state: Numbers, attached: bool) -> Load:
-        s = state.tolist()
-        return self.element(s[:3], s[3:6], s[6:9], s[9:13], attached)
+        return self.element(**state_arguments(self.element, state[:-2].tolist()), attached=attached)
+
+    def _dissipated_power(self, load: Load) -> float:
+        """Compute the power in N mm/s of all loads that are not the gradient of the elastic energy."""
+        contact, centre, relaxation = load.contact, load.centre, self.element.relaxation
+        speed = _dot_product(load.velocity, (centre.x, centre.y, centre.z))
+        polar_speed = _dot_product(load.velocity, (contact.px, contact.py, contact.pz))
+        normal = contact.normal
+        if relaxation is not None:
+            normal = relaxation.long_term_share * self.element.potential(max(load.indentation, 0.0))[1]
+        elastic_power = normal * speed - contact.polar * polar_speed
+        return -(_dot_product(load.force, load.velocity) + elastic_power + _dot_product(load.moment, load.spin))
 
     def is_touching(self, state: Numbers) -> bool:
         """Check if the ball touches the socket at a state of the integrator."""
@@ -289,15 +300,6 @@ def pull_function(pull: Any) -> Callable[[float], Vector]:
         return lambda time: components(pull(time), "a pull")
     constant = components(pull, "a pull")
     return lambda time: constant
-
-
-def _dissipated_power(load: Load) -> float:
-    """Compute the power in N mm/s of all loads that are not elastic."""
-    contact, centre = load.contact, load.centre
-    speed = _dot_product(load.velocity, (centre.x, centre.y, centre.z))
-    polar_speed = _dot_product(load.velocity, (contact.px, contact.py, contact.pz))
-    elastic_power = contact.normal * speed - contact.polar * polar_speed
-    return -(_dot_product(load.force, load.velocity) + elastic_power + _dot_product(load.moment, load.spin))
 
 
 def _dot_product(a: Any, b: Any) -> float:

@@ -16,13 +16,14 @@ from typing import Any, ClassVar
 import numpy
 
 from ..contact import Model
-from ..core.arrays import Numbers
+from ..core.arrays import Array, Numbers, where
 from ..core.checks import require
 from ..core.sources import Source
 from ..models.foundation import RadialFoundation
 from ..models.kinematics import linear_kinematics
 from ..problem import Joint
 from .potential import Potential, potential_of
+from .reaction import Elastic
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -99,6 +100,34 @@ class Prony:
         return 1.0 / self.long_term_share - numpy.sum(
             weights * numpy.exp(-numpy.asarray(time)[..., None] * rates), axis=-1
         )
+
+
+def relaxed_contact(
+    contact: Elastic, relaxed_forces: tuple[Array, ...], modulus: Prony
+) -> tuple[Elastic, tuple[Array, ...]]:
+    """Compute the contact of a relaxing liner from the instantaneous one, and the rates of its relaxed forces in N/s.
+
+    The relaxed forces s_i follow the instantaneous force F0 with the relaxation times of the terms::
+
+        τ_i s_i' = E - s_i,    F = E - Σ g_i s_i,    E = max(F0, Σ g_i s_i).
+
+    F is the hereditary integral ∫ g(t - s) dF0, until it vanishes. Then the liner recovers without the ball, as a
+    detached spring of `Viscoelastic.spring_force` does. The stiffness is that at constant relaxed forces, and the
+    energy that of the long-time modulus.
+    """
+    rows = list(zip(modulus.terms, relaxed_forces, strict=True))
+    relaxed = sum((share * relaxed_force for (share, _), relaxed_force in rows), 0.0)
+    detached = relaxed > contact.normal
+    instantaneous = where(detached, relaxed, contact.normal)
+    force, stiffness = instantaneous - relaxed, where(detached, 0.0, contact.stiffness)
+    relaxing = contact._replace(
+        energy=modulus.long_term_share * contact.energy,
+        normal=force,
+        stiffness=stiffness,
+        damped_force=force,
+        damped_stiffness=stiffness,
+    )
+    return relaxing, tuple((instantaneous - relaxed_force) / time for (_, time), relaxed_force in rows)
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from importlib.resources import files
@@ -18,7 +19,7 @@ from ..core.storage.atomic_files import write_text
 from ..dynamics import ContactState, ForceElement, PreloadedElement
 from ..version import __version__
 from .c_text import C, c_number
-from .recording import Recording, bristle_count, recording_of
+from .recording import Recording, recording_of
 from .tunable import Tunable, tunables_of
 
 BEYOND = {
@@ -26,6 +27,13 @@ BEYOND = {
     "stop": ContactState.THROUGH_WALL.sentence,
 }
 """What an exported element says of an indentation beyond the range of its law, by what it does there."""
+
+
+_STATES = {
+    "deflection": "Deflections of bristles are in mm, their rates in mm/s.",
+    "relaxed_force": "Relaxed forces are in N, their rates in N/s. The energy is that of the long-time modulus.",
+}
+"""Comments on the internal states of an element."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -44,7 +52,7 @@ class CElement:
     Raises
     ------
     ValueError
-        A name that C does not allow; an unknown `beyond`; an element with a state other than bristles (adhesion).
+        A name that C does not allow; an unknown `beyond`; an adhesive element, whose state has no rate.
 
     Examples
     --------
@@ -65,7 +73,7 @@ class CElement:
             raise ValueError(
                 f"name must start with a letter or _ and hold letters, digits and _, got {self.name!r:.60}"
             )
-        if self.element.internal_state and not bristle_count(self.element):
+        if self.element.internal_state and not self.element.internal_states:
             raise ValueError(f"{self.element.internal_state}; exported elements do not have it")
 
     @cached_property
@@ -101,8 +109,8 @@ class CElement:
     def source(self) -> str:
         """Text of the C source file of the force element."""
         recording, constants = self.recording, self.element.constants
-        # distance in mm; a lubricated ball has a force at all distances, and bristles a rate
-        always = constants.film_damping > 0.0 or bristle_count(self.element) > 0
+        # distance in mm; a lubricated ball has a force at all distances, and an internal state a rate
+        always = constants.film_damping > 0.0 or self.element.internal_states
         unloaded = -1.0 if always else recording.constants.clearance - constants.smoothing
         domain = {f"allowed[{index}]": holds for index, holds in enumerate(recording.domain.values())}
         checks = [_range_check_statement(parameter.name, parameter.above) for parameter in self.tunables]
@@ -135,16 +143,19 @@ class CElement:
 
     @property
     def _arguments(self) -> dict[str, str]:
-        """Arguments of the functions in C for the deflections of bristles, comments on them, and sizes of arrays."""
-        count = bristle_count(self.element)
+        """Arguments of the functions in C for the internal states, comments on them, and sizes of arrays."""
+        states = self.element.internal_states
+        liner = {name: count for name, count in states.items() if name == "relaxed_force"}
         return {
-            "deflection": f", const double deflection[{count}]" if count else "",
-            "not_finite": " || !is_finite(deflection) || !is_finite(deflection + 1)" if count else "",
-            "no_rate": f"\n        fill(rate, {count}, NAN, 0);" if count else "",
-            "rate": f", double rate[{count}]" if count else "",
-            "bristle_units": "\n   Deflections of bristles are in mm, their rates in mm/s." if count else "",
-            "bristle_slopes": "\n   Rates of bristles, and deflections in the direction, come last." if count else "",
-            "count": str(9 + count),
+            "internal": _state_arguments(states),
+            "liner": _state_arguments(liner),
+            "not_finite": _not_finite_tests(states),
+            "liner_not_finite": _not_finite_tests(liner),
+            "no_rate": "".join(f"\n        fill({name}_rate, {count}, NAN, 0);" for name, count in states.items()),
+            "rate": "".join(f", double {name}_rate[{count}]" for name, count in states.items()),
+            "state_units": "".join(f"\n   {_STATES[name]}" for name in states),
+            "state_slopes": "\n   Rates of internal states, and these in the direction, come last." if states else "",
+            "count": str(9 + sum(states.values())),
         }
 
     @property
@@ -168,6 +179,16 @@ class CElement:
         description = f"{joint}; {joint.source}" if joint.source else str(joint)
         comment = re.sub(r"\*/|/\*|--|\\", "?", ascii_text(description))
         return {"version": __version__, "model": self.element.model.name, "joint": comment}
+
+
+def _state_arguments(states: Mapping[str, int]) -> str:
+    return "".join(f", const double {name}[{count}]" for name, count in states.items())
+
+
+def _not_finite_tests(states: Mapping[str, int]) -> str:
+    """Return alternatives of a condition in C: an internal state is not finite, or too large to square."""
+    squares = {name: " + ".join(f"{name}[{i}] * {name}[{i}]" for i in range(count)) for name, count in states.items()}
+    return "".join(f" || !(1e8 * ({sum_of_squares}) < INFINITY)" for sum_of_squares in squares.values())
 
 
 def _range_check_statement(name: str, is_positive: bool) -> str:

@@ -18,10 +18,11 @@ from ..core.display import ascii_text
 from ..core.validity import Status
 from ..dynamics import ForceElement, PreloadedElement, ball_centre, preloaded, reaction
 from ..dynamics.ball_centre import BallCentre, Constants, Vector
-from ..dynamics.bristles import Bristles, Deflections
+from ..dynamics.bristles import Bristles
 from ..dynamics.load import Load, add_bristle_loads, contact_state_of
 from ..dynamics.potential import CurvePotential, curve_potential
 from ..dynamics.reaction import Elastic
+from ..dynamics.viscoelastic import relaxed_contact
 from ..models.closed_form import ClosedFormSolution
 from ..problem import Joint
 from .recorder import Part, Recorded, Tape, directional_derivatives
@@ -30,14 +31,8 @@ from .tunable import TUNABLES, has_formulas, joint_of_inputs, reason_of_fixed_jo
 ENERGY, HALF_ANGLE, MAX_PRESSURE = "energy_curve", "half_angle_curve", "max_pressure_curve"
 STRESS_RATIO = "stress_ratio_curve"
 STATE = ("position", "velocity", "spin")
-BRISTLES = 4  # number of deflections of bristles
 
 Outputs = dict[str, Part]  # recorded quantities by the C expression that receives them
-
-
-def bristle_count(element: ForceElement | PreloadedElement) -> int:
-    """Return the number of deflections of bristles in the state of an element, 4 or 0."""
-    return BRISTLES if isinstance(element.friction, Bristles) else 0
 
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)
@@ -63,10 +58,11 @@ class Recording:
         x, v, w = (tuple(self.tape.input(f"{name}[{axis}]") for axis in range(3)) for name in STATE)
         return x, v, w  # type: ignore[return-value]
 
-    @property
-    def deflection(self) -> Deflections | tuple[()]:
-        """Deflections of bristles as inputs of the tape; empty without bristles."""
-        return ()
+    @cached_property
+    def internal(self) -> dict[str, tuple[Part, ...]]:
+        """Components of the internal states of the element by name, as inputs of the tape."""
+        states = self.element.internal_states
+        return {name: tuple(self.tape.input(f"{name}[{i}]") for i in range(count)) for name, count in states.items()}
 
     @cached_property
     def joint(self) -> Joint | None:
@@ -126,10 +122,17 @@ class Recording:
         return ball_centre.ball_centre_at(*self.state[0], self.constants.clearance)
 
     @cached_property
-    def contact(self) -> Elastic:
-        """Recorded elastic contact at the position of the ball."""
+    def elastic(self) -> Elastic:
+        """Recorded elastic contact at the position of the ball, with the instantaneous modulus."""
         constants = self.constants._replace(wall=inf) if self.beyond == "extend" else self.constants
         return reaction.elastic_contact(self._potential, self.centre, constants)
+
+    @cached_property
+    def relaxed(self) -> tuple[Elastic, tuple[Part, ...]]:
+        """Recorded contact of a liner that may relax, and the rates of its relaxed forces."""
+        if self.element.relaxation is None:
+            return self.elastic, ()
+        return relaxed_contact(self.elastic, self.internal["relaxed_force"], self.element.relaxation)
 
     def _potential(self, depth: Recorded) -> tuple[Part, Part, Part]:
         """Record energy, force and stiffness at an indentation."""
@@ -155,13 +158,19 @@ class Recording:
 
     @cached_property
     def load(self) -> Outputs:
-        """Recorded force, moment and elastic energy, by C variable."""
-        parts = reaction.force_and_moment(self.centre, self.contact, *self.state[1:], self.constants)
-        return {
-            **_by_array_element("force", parts[:3]),
-            **_by_array_element("moment", parts[3:]),
-            "*energy": self.contact.energy,
-        }
+        """Recorded force, moment, elastic energy and rates of the internal states, by C variable."""
+        contact, rates = self.relaxed
+        parts = reaction.force_and_moment(self.centre, contact, *self.state[1:], self.constants)
+        recorded: Any = self  # it has the constants of the element
+        load = Load(parts[:3], parts[3:], contact.energy, recorded, self.centre, contact, *self.state)
+        load = load._replace(relaxed_force_rate=rates)
+        if isinstance(self.element.friction, Bristles):
+            load = add_bristle_loads(load, self.element.friction, self.internal["deflection"])
+        outputs = {**_by_array_element("force", load.force), **_by_array_element("moment", load.moment)}
+        outputs["*energy"] = load.energy
+        for name in self.internal:
+            outputs |= _by_array_element(f"{name}_rate", getattr(load, f"{name}_rate"))
+        return outputs
 
     @cached_property
     def contact_size(self) -> Outputs:
@@ -209,47 +218,23 @@ class Recording:
     @cached_property
     def status(self) -> Outputs:
         """Recorded code of the `ContactState` (free, contact, at the rim, ...)."""
-        return {"status": contact_state_of(self.centre, self.contact, isfinite(self.centre.distance), self.constants)}
+        return {"status": contact_state_of(self.centre, self.elastic, isfinite(self.centre.distance), self.constants)}
 
     @cached_property
     def tangent(self) -> Outputs:
         """Recorded tangent stiffness ∂²U/∂r² in N/mm, nine components by C variable."""
-        return _tangent_elements(reaction.tangent_stiffness(self.centre, self.contact, self.constants))
+        return _tangent_elements(reaction.tangent_stiffness(self.centre, self.relaxed[0], self.constants))
 
     @cached_property
     def slope(self) -> Outputs:
         """Recorded directional derivatives of load, half angle, pressure and rates with respect to the state."""
-        inputs, load = (*chain(*self.state), *self.deflection), list(self.load.values())
+        inputs, load = (*chain(*self.state), *chain(*self.internal.values())), list(self.load.values())
         direction = {part: self.tape.input(f"way[{index}]") for index, part in enumerate(inputs)}
         outputs = [*load[:_LOADS], *self.contact_size.values(), *load[_LOADS:]]
         return _by_array_element("slope", directional_derivatives(outputs, direction))
 
 
 _LOADS = 7  # number of components of force, moment and energy
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class BristleRecording(Recording):
-    """Recorded formulas of a force element with bristles, whose deflections are part of the state."""
-
-    @cached_property
-    def deflection(self) -> Deflections:
-        """Deflections of the bristles as inputs of the tape."""
-        return tuple(self.tape.input(f"deflection[{index}]") for index in range(BRISTLES))  # type: ignore[return-value]
-
-    @cached_property
-    def load(self) -> Outputs:
-        """Recorded force, moment, elastic energy and rates of the deflections, by C variable."""
-        parts = reaction.force_and_moment(self.centre, self.contact, *self.state[1:], self.constants)
-        recorded: Any = self  # it has the constants of the element
-        smooth = Load(parts[:3], parts[3:], self.contact.energy, recorded, self.centre, self.contact, *self.state)
-        load = add_bristle_loads(smooth, cast(Bristles, self.element.friction), self.deflection)
-        return {
-            **_by_array_element("force", load.force),
-            **_by_array_element("moment", load.moment),
-            "*energy": load.energy,
-            **_by_array_element("rate", load.deflection_rate),
-        }
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -338,6 +323,5 @@ _SMALL_ANGLE = 0.01  # half angle in rad at which the curve of the stresses begi
 
 def recording_of(element: ForceElement | PreloadedElement, beyond: str) -> Recording:
     """Record the formulas of a force element; `beyond` is as in `CElement`."""
-    if isinstance(element, PreloadedElement):
-        return PreloadRecording(element=element, beyond=beyond)
-    return (BristleRecording if bristle_count(element) else Recording)(element=element, beyond=beyond)
+    kind = PreloadRecording if isinstance(element, PreloadedElement) else Recording
+    return kind(element=cast(Any, element), beyond=beyond)

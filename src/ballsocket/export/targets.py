@@ -14,7 +14,6 @@ from .c_element import fill_template
 from .compiler import LIBRARY_ENDING, NoCompiler, shared_library
 from .job import NOT_CENTRAL, ExportJob, Texts
 from .law_tables import pivot_texts, table_texts, two_axes_note
-from .recording import bristle_count
 from .warp import warp_texts
 
 
@@ -37,8 +36,8 @@ class Target:
         What follows an indentation beyond the range of the law, if the program does not use the C program.
     central : bool
         True if the program has a force that depends on the distance of the centres alone.
-    bristles : bool
-        True if the program can have the deflections of bristles as states.
+    states : bool
+        True if the program can have internal states: deflections of bristles, relaxed forces of a liner.
     """
 
     name: str
@@ -49,7 +48,7 @@ class Target:
     without: tuple[str, ...] = ()
     beyond_range: str = ""
     central: bool = False
-    bristles: bool = False
+    states: bool = False
 
     def check(self, joint: Joint) -> None:
         """Raise ValueError for a preloaded joint whose force the program cannot represent, before it is solved."""
@@ -75,9 +74,9 @@ class Target:
     def file_texts(self, job: ExportJob) -> Texts:
         """Return the contents of all files of a job by name: those of the program, and a page on their use.
 
-        Raises ValueError: bristles, whose state the program cannot represent.
+        Raises ValueError: an internal state that the program cannot represent.
         """
-        if bristle_count(job.element) and not self.bristles:
+        if job.element.internal_states and not self.states:
             raise ValueError(f"{job.element.internal_state}, which {self.name} cannot represent: export c or an FMU")
         notes = "\n".join(filter(None, (self._omitted_features(job), self.note(job))))
         page = job.readme(self.title, self.beyond_range, notes)
@@ -201,7 +200,7 @@ def _modelica_texts(job: ExportJob) -> Texts:
 TARGETS: Mapping[str, Target] = {
     target.name: target
     for target in (
-        Target(name="c", title="C99 sources without other libraries", texts=ExportJob.program_texts, bristles=True),
+        Target(name="c", title="C99 sources without other libraries", texts=ExportJob.program_texts, states=True),
         Target(
             name="opensim",
             title="an expression force in an .osim file, and a plug-in",

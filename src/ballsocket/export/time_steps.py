@@ -22,9 +22,10 @@ _SHARES = numpy.geomspace(1.0, 0.01, 60)
 class TimeStepAdvice:
     """Time steps in s for a ball of `mass` in kg in a fixed socket, at indentations up to `depth` in mm.
 
-    `stable` is the largest stable step 2/sqrt(k/m) of an explicit integration, with the largest stiffness k in N/mm.
-    `accurate` is the largest step with which a bounce up to that depth keeps its energy within 1 %, whenever the ball
-    touches within a step; the integration is semi-implicit (symplectic) Euler, as in MuJoCo.
+    `stable` is the largest stable step of an explicit integration: 2/sqrt(k/m) with the largest stiffness k in N/mm,
+    and at most twice the shortest time of a relaxing liner. `accurate` is the largest step with which a bounce up to
+    that depth keeps its energy within 1 %, whenever the ball touches within a step; the integration is semi-implicit
+    (symplectic) Euler, as in MuJoCo.
     """
 
     mass: float
@@ -55,6 +56,8 @@ def time_step_advice(element: ForceElement | PreloadedElement, depth: float, mas
         _, forces, stiffnesses = element.potential(depths)
     stiffness = float(numpy.max(stiffnesses))
     stable = 2.0 * (1e-3 * mass / stiffness) ** 0.5
+    if isinstance(element, ForceElement) and element.relaxation is not None:
+        stable = min(stable, 2.0 * float(numpy.min(element.relaxation.times)))
     changes = [_energy_change(depths, forces[-len(depths) :], mass, share * stable) for share in _SHARES]
     too_large = numpy.flatnonzero(~(numpy.array(changes) <= _ALLOWED_ENERGY_ERROR))
     accurate = float(_SHARES[min(too_large.max(initial=-1) + 1, len(_SHARES) - 1)]) * stable

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from hashlib import sha256
 from html import escape
+from itertools import accumulate
 from math import inf
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -21,7 +22,6 @@ from ...version import __version__
 from ..c_element import CElement, fill_template
 from ..c_text import c_number
 from ..compiler import LIBRARY_ENDING, THIS_PLATFORM, NoCompiler, Platform, compile_library, cross_compilers
-from ..recording import bristle_count
 from ..targets import ExportJob
 from ..time_steps import TimeStepAdvice
 from .reference_results import reference_tables, suggested_times
@@ -260,8 +260,9 @@ class Fmu:
     """Force element as an FMU (functional mock-up unit) for model exchange and co-simulation, in SI units.
 
     Inputs are position, velocity and spin; outputs are force, moment, energy, half angle and largest pressure. The unit
-    has no states but the deflections of bristles, and the motion of a ball inside. Damping and friction are tunable
-    parameters, and the joint if its law is a formula. The start position of a preloaded ball is that at rest.
+    has no states but deflections of bristles, relaxed forces of a liner, and the motion of a ball inside. Damping and
+    friction are tunable parameters, and the joint if its law is a formula. The start position of a preloaded ball is
+    that at rest.
 
     Parameters
     ----------
@@ -337,17 +338,19 @@ class Fmu:
     @cached_property
     def _numbers(self) -> dict[str, str]:
         """Numbers of variables, start values, and the message on validity, for placeholders of the C template."""
-        element, inside, bristles = self.element, self.ball_mass is not None, bristle_count(self.element)
-        parts = [("1e-3", 6), ("1.0", 3), ("1e-3", bristles), ("1.0", 6 * inside)]
+        element, inside, counts = self.element, self.ball_mass is not None, self.element.internal_states.values()
+        *firsts, count = 0, *accumulate(counts)
+        sizes = ["1e-3" if variable.unit in ("m", "m/s") else "1.0" for variable in self.variables[: 9 + count]]
+        sizes += ["1.0"] * 6 * inside
         fixed = [variable for variable in self.variables if variable.variability != "continuous"]
-        values = self.variables[: sum(count for _, count in parts)]
+        values = self.variables[: len(sizes)]
         return {
             "ball": str(int(inside)),
-            "bristles": str(bristles),
+            "internal": str(count),
             "fixed": str(sum(variable.variability == "constant" for variable in fixed)),
-            "at_deflection": ", s + 9" if bristles else "",
-            "into_bend": ", bend" if bristles else "",
-            "value_units": ", ".join(unit for unit, count in parts for _ in range(count)),
+            "at_internal": "".join(f", s + {9 + first}" for first in firsts),
+            "into_rates": "".join(f", inner + {first}" for first in firsts),
+            "value_units": ", ".join(sizes),
             "values": ", ".join(c_number(variable.start) for variable in values if variable.start is not None),
             "starts": ", ".join(c_number(variable.start) for variable in fixed if variable.start is not None),
             "beyond": f"{element.model.name} is not valid beyond {self._job.depth:.4g} mm in the exported joint",

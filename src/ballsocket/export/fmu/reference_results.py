@@ -12,8 +12,8 @@ import numpy
 from ...core.arrays import Numbers
 from ...core.storage.atomic_files import write_text
 from ...dynamics import ForceElement, PreloadedElement
+from ...dynamics.element import internal_rates, state_arguments
 from ...dynamics.motion import TONNE
-from ..recording import bristle_count
 from .variables import variables
 
 _MM, _MPA = 1e-3, 1e6
@@ -51,14 +51,14 @@ def write_cross_check(
 def reference_tables(element: ForceElement | PreloadedElement, ball_mass: float | None) -> tuple[str, str]:
     """Return inputs and outputs over the time as CSV tables in SI units.
 
-    Without a ball inside, the inputs are a prescribed motion, which is constant for bristles: hosts differ in how
-    inputs vary in a step. With a ball they are a force, which pushes it through its clearance, and a torque.
+    Without a ball inside, the inputs are a prescribed motion, which is constant with internal states: hosts differ in
+    how inputs vary in a step. With a ball they are a force, which pushes it through its clearance, and a torque.
     """
     stop, step = suggested_times(ball_mass)
     time = numpy.arange(round(stop / step) + 1) * step
     if ball_mass is None:
         held = trajectory(element, numpy.array([_STOP / 2]))[0]
-        states = _integrate(element, time, held) if bristle_count(element) else trajectory(element, time)
+        states = _integrate(element, time, held) if element.internal_states else trajectory(element, time)
         given, results = states_in_si(states[:, :9]), reference_loads(element, states)
     else:
         distance = max(_MM * element.constants.clearance, 1e-6 * element.constants.socket_radius)
@@ -83,30 +83,29 @@ def _integrate(
     mass: float = math.inf,
     applied: tuple[Any, Any] = (0.0, 0.0),
 ) -> Numbers:
-    """Integrate motion and deflections (times, 9 and 4) of a solid ball (kg) from a motion at the first time.
+    """Integrate motion and internal states (times, 9 + n) of a solid ball (kg) from a motion at the first time.
 
     Applied force and torque give it the accelerations `applied` in m/s² and rad/s². A ball of infinite mass is held at
     its first position, velocity and spin.
     """
     from scipy.integrate import solve_ivp  # slow to import
 
-    count, inertia = bristle_count(element), 0.4 * TONNE * mass * element.constants.ball_radius**2
+    count, inertia = sum(element.internal_states.values()), 0.4 * TONNE * mass * element.constants.ball_radius**2
 
     def rates(now: float, state: Numbers) -> Any:
         load = load_at(element, state)
         velocity = state[3:6] if mass < math.inf else numpy.zeros(3)
         acceleration = numpy.array(load.force) / (TONNE * mass) + applied[0] / _MM
         turning = numpy.array(load.moment) / inertia + applied[1]
-        return [*velocity, *acceleration, *turning, *(load.deflection_rate if count else ())]
+        return [*velocity, *acceleration, *turning, *internal_rates(load)]
 
     options = {"method": "LSODA", "rtol": _TOLERANCE, "atol": _TOLERANCE, "max_step": time[1]}
     return solve_ivp(rates, (0.0, time[-1]), [*motion, *(0.0,) * count], t_eval=time, **options).y.T
 
 
 def load_at(element: ForceElement | PreloadedElement, state: Numbers) -> Any:
-    """Compute the load at states (..., 9 and 4) of motion and deflections, or of motion alone."""
-    parts = [state[..., :3], state[..., 3:6], state[..., 6:9], state[..., 9:]][: 4 if bristle_count(element) else 3]
-    return element(*(part.tolist() if state.ndim == 1 else part for part in parts))
+    """Compute the load at states (..., 9 + n) of motion and internal states."""
+    return element(**state_arguments(element, state.tolist() if state.ndim == 1 else state))
 
 
 def trajectory(element: ForceElement | PreloadedElement, time: Numbers) -> Numbers:

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Any
 
 from ...dynamics import ContactState, ForceElement, PreloadedElement
-from ..recording import bristle_count
 from ..tunable import Tunable, joint_tunables, reason_of_fixed_joint, tunables_of
 
 UNITS: Mapping[str, Mapping[str, int]] = {
@@ -18,6 +17,7 @@ UNITS: Mapping[str, Mapping[str, int]] = {
     "s": {"s": 1},
     "s/m": {"s": 1, "m": -1},
     "N": {"kg": 1, "m": 1, "s": -2},
+    "N/s": {"kg": 1, "m": 1, "s": -3},
     "N.m": {"kg": 1, "m": 2, "s": -2},
     "J": {"kg": 1, "m": 2, "s": -2},
     "Pa": {"kg": 1, "m": -1, "s": -2},
@@ -72,15 +72,16 @@ _SCALARS = {
     "max_pressure": ("Pa", "largest contact pressure"),
     "status": ("1", f"status of the contact: {', '.join(_STATUSES)}"),
 }
-_BRISTLES = {
-    "deflection": ("m", "deflection of the bristles: along the axes of the socket, and the arc about the load")
+_INTERNAL_STATES = {
+    "deflection": ("m", "deflection of the bristles: along the axes of the socket, and the arc about the load"),
+    "relaxed_force": ("N", "relaxed force of a term of the liner"),
 }
 _APPLIED = {
     "applied_force": ("N", "applied force on the ball at its centre, in axes of the socket, which is at rest"),
     "applied_torque": ("N.m", "applied torque on the ball"),
 }
 _BALL = {"mass": ("kg", "mass of the ball"), "inertia": ("kg.m2", "moment of inertia of the ball about its centre")}
-_RATES = {"m": "m/s", "m/s": "m/s2", "rad/s": "rad/s2"}
+_RATES = {"m": "m/s", "m/s": "m/s2", "rad/s": "rad/s2", "N": "N/s"}
 """Units of the rates of states by those of the states."""
 
 
@@ -90,7 +91,7 @@ def variables(element: ForceElement | PreloadedElement, ball_mass: float | None 
     A ball inside, of a mass in kg, has its motion as states; without a ball the motion is an input.
     """
     values = _values(element, ball_mass)
-    state = tuple(range(1, 10 + bristle_count(element)))
+    state = tuple(range(1, 10 + sum(element.internal_states.values())))
     outputs = [
         *_components(_LOADS, causality="output", needs=state),
         *({**each, "causality": "output", "needs": (1, 2, 3)} for each in _properties(_SCALARS)),
@@ -112,7 +113,7 @@ def variables(element: ForceElement | PreloadedElement, ball_mass: float | None 
 
 
 def _values(element: ForceElement | PreloadedElement, ball_mass: float | None) -> list[dict]:
-    """List the properties of position, velocity and spin, of deflections, and of the load on a ball inside."""
+    """List the properties of position, velocity and spin, of internal states, and of the load on a ball inside."""
     position = element.rest_position if isinstance(element, PreloadedElement) else (0.0, 0.0, 0.0)
     starts = (*(_MM * component for component in position), *(0.0,) * 6)
     motion = [
@@ -120,8 +121,12 @@ def _values(element: ForceElement | PreloadedElement, ball_mass: float | None) -
         | ({"causality": "input"} if ball_mass is None else {"causality": "output", "needs": (number,)})
         for number, (each, start) in enumerate(zip(_components(_MOTION), starts, strict=True), 1)
     ]
-    deflections = _components(_BRISTLES, bristle_count(element), causality="local", start=0.0)
-    return [*motion, *deflections, *(_components(_APPLIED, causality="input", start=0.0) if ball_mass else ())]
+    internal = [
+        each
+        for name, count in element.internal_states.items()
+        for each in _components({name: _INTERNAL_STATES[name]}, count, causality="local", start=0.0)
+    ]
+    return [*motion, *internal, *(_components(_APPLIED, causality="input", start=0.0) if ball_mass else ())]
 
 
 def _parameters(element: ForceElement | PreloadedElement, ball_mass: float | None) -> Iterator[dict]:

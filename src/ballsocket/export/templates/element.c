@@ -49,7 +49,7 @@ $unloaded
 }
 
 int ${name}_load(const ${name}_parameters *p, const double position[3], const double velocity[3],
-                 const double spin[3]$deflection, double force[3], double moment[3], double *energy$rate)
+                 const double spin[3]$internal, double force[3], double moment[3], double *energy$rate)
 {
     int status;
     if (!is_finite(position) || !is_finite(velocity) || !is_finite(spin)$not_finite) {
@@ -88,11 +88,11 @@ $valid
     return valid;
 }
 
-int ${name}_tangent(const ${name}_parameters *p, const double position[3], double tangent[9])
+int ${name}_tangent(const ${name}_parameters *p, const double position[3]$liner, double tangent[9])
 {
     int status;
     (void)p;
-    if (!is_finite(position))
+    if (!is_finite(position)$liner_not_finite)
         return fill(tangent, 9, NAN, ${NAME}_NO_NUMBER);
     if (apart(p, position))
         return fill(tangent, 9, 0.0, ${NAME}_FREE);
@@ -101,7 +101,7 @@ $tangent
 }
 
 int ${name}_slope(const ${name}_parameters *p, const double position[3], const double velocity[3],
-                  const double spin[3]$deflection, const double way[$count], double slope[$count])
+                  const double spin[3]$internal, const double way[$count], double slope[$count])
 {
     int status;
     if (!is_finite(position) || !is_finite(velocity) || !is_finite(spin)$not_finite

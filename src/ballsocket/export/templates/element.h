@@ -38,9 +38,9 @@ const char *${name}_complaint(const ${name}_parameters *p);
 /* Description of a status. */
 const char *${name}_sentence(int status);
 
-/* Force in N, moment in N mm, energy in N mm. Parameters are not checked.$bristle_units */
+/* Force in N, moment in N mm, energy in N mm. Parameters are not checked.$state_units */
 int ${name}_load(const ${name}_parameters *p, const double position[3], const double velocity[3],
-                 const double spin[3]$deflection, double force[3], double moment[3], double *energy$rate);
+                 const double spin[3]$internal, double force[3], double moment[3], double *energy$rate);
 
 /* Half angle of the contact in rad, its largest pressure in MPa. */
 int ${name}_contact(const ${name}_parameters *p, const double position[3], double *half_angle, double *max_pressure);
@@ -49,13 +49,13 @@ int ${name}_contact(const ${name}_parameters *p, const double position[3], doubl
    of the exported thickness. */
 int ${name}_valid(const ${name}_parameters *p, const double position[3]);
 
-/* Second derivatives of the energy in N/mm, row by row: minus the derivative of the elastic force. */
-int ${name}_tangent(const ${name}_parameters *p, const double position[3], double tangent[9]);
+/* Tangent stiffness in N/mm, row by row: minus the derivative of the elastic force, at constant internal states. */
+int ${name}_tangent(const ${name}_parameters *p, const double position[3]$liner, double tangent[9]);
 
 /* Derivatives of force (3), moment (3), energy, half angle and largest pressure along a direction of position, velocity
-   and spin.$bristle_slopes */
+   and spin.$state_slopes */
 int ${name}_slope(const ${name}_parameters *p, const double position[3], const double velocity[3],
-                  const double spin[3]$deflection, const double way[$count], double slope[$count]);
+                  const double spin[3]$internal, const double way[$count], double slope[$count]);
 
 #ifdef __cplusplus
 }

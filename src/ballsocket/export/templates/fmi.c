@@ -1,12 +1,12 @@
 /* The joint as an FMU of version $standard, for model exchange and co-simulation. Written by ballsocket $version.
-   All quantities are in SI units. Value references: 0 time, 1..9 position, velocity and spin, then deflections of
-   bristles (4 or none), applied force and torque (6 with a ball inside), 10 outputs (force, moment, energy, half angle,
-   largest pressure and status), rates of the states, parameters, and constants. Deflections are states; position,
-   velocity and spin are states of a ball inside, otherwise inputs. */
+   All quantities are in SI units. Value references: 0 time, 1..9 position, velocity and spin, then internal states
+   (deflections of bristles, relaxed forces of the liner), applied force and torque (6 with a ball inside), 10 outputs
+   (force, moment, energy, half angle, largest pressure and status), rates of the states, parameters, and constants.
+   Position, velocity and spin are states of a ball inside, otherwise inputs. */
 #define FMI $fmi
 #define BALL $ball
-#define BRISTLES $bristles
-#define STATES (BRISTLES + 9 * BALL)
+#define INTERNAL $internal
+#define STATES (INTERNAL + 9 * BALL)
 
 #include <math.h>
 #include <stdbool.h>
@@ -79,7 +79,7 @@ typedef void (*fmi3UnlockPreemptionCallback)(void);
 #define UNIT fmi${fmi}$handle c
 #define REFERENCES const fmi${fmi}ValueReference vr[], size_t n
 
-enum { MOTION = 9, APPLIED = MOTION + BRISTLES, VALUES = APPLIED + 6 * BALL, FIRST_STATE = MOTION * !BALL };
+enum { MOTION = 9, APPLIED = MOTION + INTERNAL, VALUES = APPLIED + 6 * BALL, FIRST_STATE = MOTION * !BALL };
 enum { OUTPUTS = 10, LOADS = OUTPUTS - 1, RESULTS = OUTPUTS + STATES };
 enum { PARAMETERS = $parameters, MASS = PARAMETERS, INERTIA, TUNABLES = PARAMETERS + 2 * BALL, FIXED = $fixed };
 enum { CONSTANTS = 1 + VALUES + RESULTS + TUNABLES, VARIABLES = CONSTANTS + FIXED };
@@ -174,12 +174,12 @@ static result report_status(instance *i, const ${name}_parameters *p, int status
     return report(i, status == ${NAME}_THROUGH_WALL ? DISCARD : ERROR, text);
 }
 
-/* Rates of the states, linear in the values x and the loads y; `bend` has those of the bristles in package units. */
-static void find_rates(const instance *i, const double x[VALUES], double y[RESULTS], const double *bend)
+/* Rates of the states, linear in the values x and the loads y; `inner` has those of internal states in package units. */
+static void find_rates(const instance *i, const double x[VALUES], double y[RESULTS], const double *inner)
 {
     double *rate = y + OUTPUTS;
     int k;
-    (void)i, (void)x, (void)bend, (void)rate, (void)k;
+    (void)i, (void)x, (void)inner, (void)rate, (void)k;
 #if BALL
     for (k = 0; k < 3; k++) {
         rate[k] = x[3 + k];
@@ -187,9 +187,9 @@ static void find_rates(const instance *i, const double x[VALUES], double y[RESUL
         rate[6 + k] = (y[3 + k] + x[APPLIED + 3 + k]) / i->now.parameter[INERTIA];
     }
 #endif
-#if BRISTLES
-    for (k = 0; k < BRISTLES; k++)
-        rate[9 * BALL + k] = bend[k] * value_unit[MOTION + k];
+#if INTERNAL
+    for (k = 0; k < INTERNAL; k++)
+        rate[9 * BALL + k] = inner[k] * value_unit[MOTION + k];
 #endif
 }
 
@@ -206,7 +206,7 @@ static const char *complaint_of(const instance *i, const ${name}_parameters *p)
 
 static result evaluate(instance *i)
 {
-    double s[VALUES], bend[BRISTLES + 1], *y = i->result;
+    double s[VALUES], inner[INTERNAL + 1], *y = i->result;
     const char *complaint;
     ${name}_parameters p;
     int k, status;
@@ -215,12 +215,12 @@ static result evaluate(instance *i)
     i->evaluated = 1;
     convert_units(i, s, &p);
     complaint = complaint_of(i, &p);
-    status = ${name}_load(&p, s, s + 3, s + 6$at_deflection, y, y + 3, y + 6$into_bend);
+    status = ${name}_load(&p, s, s + 3, s + 6$at_internal, y, y + 3, y + 6$into_rates);
     ${name}_contact(&p, s, y + 7, y + 8);
     y[9] = status;
     for (k = 0; k < OUTPUTS; k++)
         y[k] *= output_unit[k];
-    find_rates(i, i->now.value, y, bend);
+    find_rates(i, i->now.value, y, inner);
     for (k = 0; complaint && k < RESULTS; k++)
         y[k] = NAN;
     i->status = complaint ? report(i, ERROR, complaint) : report_status(i, &p, status, s);
@@ -355,7 +355,7 @@ static result directional(UNIT, const fmi${fmi}ValueReference unknowns[], size_t
     convert_units(i, s, &p);
     if ((complaint = complaint_of(i, &p)))
         return report(i, ERROR, complaint);
-    status = ${name}_slope(&p, s, s + 3, s + 6$at_deflection, way, slope);
+    status = ${name}_slope(&p, s, s + 3, s + 6$at_internal, way, slope);
     for (j = 0; j < LOADS; j++)
         result_slope[j] = slope[j] * output_unit[j];
     find_rates(i, direction, result_slope, slope + LOADS);
