@@ -11,11 +11,23 @@ from ballsocket.elasticity.off_axis.directions import (
     check_direction,
     magnitudes_and_directions,
     polar_angle,
+    tangents,
     unit_vectors,
 )
 from ballsocket.elasticity.off_axis.grid import Grid, even_grid
 
 from .shapes import direction, gap_of, measures_of
+
+
+def test_unit_vectors_have_their_angles_and_right_handed_tangents():
+    polar, azimuth = np.linspace(0.1, 3.0, 7)[:, None], np.linspace(-3.0, 3.0, 5)
+    n = unit_vectors(polar, azimuth)
+    assert polar_angle(5.0 * n) == pytest.approx(polar + 0 * azimuth)
+    assert np.arctan2(n[1], n[0]) == pytest.approx(azimuth + 0 * polar)
+    first, second = tangents(n)
+    assert np.linalg.norm(first, axis=0) == pytest.approx(1.0)
+    assert (first * n).sum(axis=0) == pytest.approx(0.0, abs=1e-15)
+    assert second == pytest.approx(np.cross(n, first, axis=0))
 
 
 def test_directions_are_accurate_at_both_poles_and_zero_for_zero_vectors():
