@@ -159,14 +159,6 @@ def test_friction_torque_is_the_integral_of_pressure_times_lever(axis):
     assert PRESSED.friction_torque(0.1, axis) == pytest.approx(0.1 * HIP.ball_radius * total, rel=1e-4)
 
 
-def test_spin_torque_of_hertz_is_three_sixteenths_pi():
-    """τ = 3π/16 μ F a for spin about the axis of a flat circle of radius a, here on the radius of the ball."""
-    joint = HIP.replace(clearance=2.0)
-    contact = bs.Hertz().press(joint, force=10.0)
-    radius = joint.ball_radius * contact.half_angle
-    assert contact.friction_torque(0.2, 0.0) == pytest.approx(3 * pi / 16 * 0.2 * 10.0 * radius, rel=2e-3)
-
-
 def test_friction_torque_has_the_shape_of_the_contact_and_the_period_of_half_a_turn():
     contact = bs.HessForsbach().press(HIP, force=np.array([1000.0, 3000.0]))
     torque = contact.friction_torque(0.1)

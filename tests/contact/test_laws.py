@@ -57,15 +57,6 @@ def test_a_law_ends_where_presses_fail(model):
     assert law(-1e-3) == law(-inf) == (0.0, 0.0)
 
 
-@pytest.mark.parametrize("name", ["exact", "tabulated", "refined", "plane-layer"])
-def test_a_curve_is_a_power_of_the_indentation_below_its_low_end(name):
-    model = bs.catalogue[name]
-    law, _ = law_and_end(model, HIP)
-    d = law.curve.low
-    assert law(d / 10)[0] == pytest.approx(law(d)[0] * 0.1 ** (d * law(d)[1] / law(d)[0]), rel=1e-9)
-    assert law(d / 10)[0] == pytest.approx(model.press(HIP, indentation=d / 10).force, rel=5e-3)
-
-
 test_joints_and_models_without_a_law_are_refused = refused_calls(
     (lambda: bs.HessForsbach().law(HIP.replace(clearance=np.array([0.1, 0.2]))), "a law needs one joint"),
     (lambda: bs.AdhesiveSocket(work_of_adhesion=np.array([0.0])).law(HIP), "a law needs one joint"),

@@ -44,12 +44,6 @@ def test_roots_of_numbers_and_arrays(law, target, low, high, start, root):
     np.testing.assert_allclose(values, root, rtol=tolerance)
 
 
-def test_roots_of_different_targets_converge_together():
-    targets = np.array([1e-6, 1.0, 27.0, 64.0, 1e3])
-    roots = increasing_root(cube, targets, np.zeros(5), np.full(5, 20.0), np.full(5, 5.0))
-    np.testing.assert_allclose(roots, np.cbrt(targets), rtol=1e-7)
-
-
 def test_the_number_of_evaluations_is_limited():
     calls = []
 

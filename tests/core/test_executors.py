@@ -4,15 +4,13 @@ import gc
 import os
 import subprocess
 import sys
-from collections import deque
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor
 from importlib import import_module
 
 import numpy as np
 import pytest
 
 from ballsocket.core.executors import Processes, Serial
-from ballsocket.core.executors import processes as module
 from ballsocket.core.executors.dask import Distributed, local_cluster
 from ballsocket.core.executors.processes import available_cores
 
@@ -113,29 +111,6 @@ def test_available_cores_are_those_of_this_process(monkeypatch):
     for count, cores in ((5, 5), (None, 1)):
         monkeypatch.setattr(os, "cpu_count", lambda count=count: count)
         assert available_cores() == cores
-
-
-class FakePool:
-    """Pool whose pieces are finished at once."""
-
-    def __init__(self):
-        self.submitted = []
-
-    def submit(self, function, number):
-        self.submitted.append(number)
-        future = Future()
-        future.set_result(number)
-        return future
-
-
-def test_few_pieces_are_submitted_at_a_time():
-    pool, pending = FakePool(), deque(range(10))
-    results = module._submit_until_worker_dies(pool, pending, 4)
-    next(results)
-    assert pool.submitted == [0, 1, 2, 3]
-    assert len(list(results)) == 9
-    assert pool.submitted == list(range(10))
-    assert not pending
 
 
 PARENT = """

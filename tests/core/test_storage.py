@@ -9,12 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import ballsocket as bs
 from ballsocket.core.executors import Serial
 from ballsocket.core.input_files import open_input, record_inputs, resolve_input, resolve_inside, restriction_variables
 from ballsocket.core.storage import atomic_files
 from ballsocket.core.storage.atomic_files import is_draft_folder, make_draft_folder, read_arrays, write_arrays
-from ballsocket.core.storage.pieces import PieceRun, PieceStore, fingerprint, hash_inputs
+from ballsocket.core.storage.pieces import PieceRun, PieceStore, hash_inputs
 
 from ..places import symlink_or_skip
 
@@ -191,16 +190,6 @@ def test_the_cache_folder_follows_the_environment_and_need_not_be_writable(tmp_p
     monkeypatch.delenv("XDG_CACHE_HOME")
     monkeypatch.setattr(Path, "home", lambda: Path("/home/me"))
     assert atomic_files.cache_folder() == Path("/home/me/.cache/ballsocket")
-
-
-def test_the_fingerprint_is_the_version_and_a_digest_of_the_package():
-    package = Path(bs.__file__).parent
-    digest = sha256()
-    for path in sorted(package.rglob("*")):
-        if path.suffix in {".py", ".npz", ".toml", ".csv", ".html", ".css"}:
-            digest.update(path.relative_to(package).as_posix().encode())
-            digest.update(path.read_bytes())
-    assert fingerprint() == f"{bs.__version__}+{digest.hexdigest()[:8]}"
 
 
 def test_digests_differ_by_value_type_and_order():

@@ -68,12 +68,6 @@ def test_domain_is_a_mask_of_the_points_and_a_joint_outside_is_rejected():
             validity.check_domain(domain, joint, "test")
 
 
-def test_default_fits_and_remarks_about_bodies_have_their_limits():
-    assert validity.NON_NEGATIVE_CLEARANCE.strictly_holds(SimpleNamespace(joint=HIP.replace(clearance=0.0)))
-    assert not validity.NON_NEGATIVE_CLEARANCE.strictly_holds(SimpleNamespace(joint=HIP.replace(interference=1e-9)))
-    assert [remark.high for remark in validity.body_remarks("a full space", "a full ball")] == [0.02, 0.05]
-
-
 @pytest.mark.parametrize(
     ("limit", "name", "inside", "outside"),
     [

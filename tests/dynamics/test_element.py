@@ -3,7 +3,7 @@
 import json
 from dataclasses import replace
 from itertools import product
-from math import inf, nan, pi, radians
+from math import inf, nan, radians
 
 import array_api_strict
 import numpy as np
@@ -127,25 +127,6 @@ def test_dissipation_is_positive_and_balances_the_power(cup, smoothing):
         parts = load.force * velocity, -stored * velocity, load.moment * spin
         size = np.sum(np.abs(parts), axis=(0, 2))
         assert (np.abs(np.sum(parts, axis=(0, 2)) + load.dissipation) <= 1e-12 * size).all()
-
-
-@pytest.mark.parametrize(("cup", "polar"), [(None, 0.3), (bs.Cup(), 1.5)], ids=["sphere", "over the rim"])
-def test_work_on_a_closed_path_is_zero(cup, polar):
-    """Integrate f·dr over closed paths in contact by the trapezoidal rule, which is exact for smooth periods."""
-    element = bs.ForceElement(bs.HessForsbach(), HIP, cup=cup, smoothing=0.005)
-    random, count = np.random.default_rng(3), 2000
-    t = 2 * pi * np.arange(count) / count
-    for _ in range(3):
-        wave = [sum(random.normal(scale=0.3 / k) * np.sin(k * t + random.uniform(0, 6)) for k in (1, 2)) for _ in "eab"]
-        e, lean, turn = C + 0.05 * (1.0 + 0.3 * wave[0]), polar + 0.1 * wave[1], wave[2]
-        path = e[:, None] * np.stack([np.sin(lean) * np.cos(turn), np.sin(lean) * np.sin(turn), np.cos(lean)], axis=-1)
-        rate = np.fft.ifft(1j * np.fft.fftfreq(count, 1 / count)[:, None] * np.fft.fft(path, axis=0), axis=0).real
-        load = element(path)
-        power = np.einsum("ni,ni->n", load.force, rate)
-        assert np.ptp(load.energy) > 0.2 * load.energy.max()
-        assert abs(power.mean()) <= 1e-10 * np.abs(power).max()
-        if cup is not None:
-            assert set(load.status.tolist()) == {ContactState.AT_RIM}
 
 
 def test_smoothed_force_is_twice_differentiable_and_exact_beyond_the_smoothing():

@@ -71,16 +71,6 @@ def test_areas_angles_and_pressures_identify_only_the_product(data, free):
     assert fit.sensitivity == ()  # no indentations, which a machine would read
 
 
-def test_an_end_of_a_profile_is_a_constrained_minimum_at_the_limit_of_the_rise():
-    fit = identified(indentations(), *angles_and_pressures(3))
-    for index, interval in enumerate(fit.information.intervals):
-        for end in (interval.low, interval.high):
-            neighbours = end.theta + np.outer(np.linspace(-0.05, 0.05, 201), np.eye(2)[1 - index])
-            rises = 2 * (fit.misfit.costs(neighbours) - fit.best.cost)
-            assert rises.min() == pytest.approx(1.96**2, rel=0.05)
-            assert rises[100] == pytest.approx(rises.min(), abs=0.05)
-
-
 def test_a_band_that_ends_at_an_end_of_a_range_is_reported_but_not_at_a_physical_limit():
     """A very stiff machine is identifiable: its compliance cannot be below 0."""
     fit = identified(*angles_and_pressures(1000), free=NARROW)

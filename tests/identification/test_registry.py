@@ -69,13 +69,6 @@ def identified_file(folder, model, free, data):
     return read_identify(folder / "data.toml").identify_unknowns().point
 
 
-def test_a_file_frees_a_number_of_the_model(tmp_path):
-    values = ", ".join(f'"{1e3 * value:.9f} um"' for value in CONTACT.indentation)
-    data = f'quantity = "indentation"\nvalues = [{values}]\nforce = {FORCE.tolist()}\nuncertainty = "1 nm"'
-    point = identified_file(tmp_path, "adhesive", 'work_of_adhesion = "0.01..1 J/m^2"', data)
-    assert point == pytest.approx({"work_of_adhesion": 2e-4}, rel=1e-3)
-
-
 LOADS = np.linspace(300.0, 3000.0, 5)
 SLIDING = bs.HessForsbach().press(HIP, force=LOADS)
 FRICTION = {"friction_coefficient": (0.0, 0.3)}

@@ -39,9 +39,6 @@ def test_half_angle_does_not_determine_the_load_without_clearance():
         contact = model.press(hip(clearance=0.0), half_angle=np.array([0.0, 0.5]))
         np.testing.assert_array_equal(contact.status, [bs.Status.OK, bs.Status.NOT_REACHED])
         np.testing.assert_array_equal(contact.force, [0.0, np.nan])
-    line = bs.PinInHole().press(hip(clearance=0.0), half_angle=np.array([0.0, 0.5]))
-    np.testing.assert_array_equal(line.status, [bs.Status.OK, bs.Status.NOT_REACHED])
-    np.testing.assert_array_equal(line.line_load, [0.0, np.nan])
 
 
 def test_exact_kinematics_have_no_result_at_extreme_loads():

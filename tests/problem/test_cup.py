@@ -96,13 +96,6 @@ def test_frame_is_right_handed_and_orthonormal(cup):
     assert x[2] >= 0.0
 
 
-def test_rim_distance_decreases_with_tilt_and_half_angle():
-    flat = bs.Cup(arc_of_cover=radians(160.0))
-    assert flat.rim == pytest.approx(radians(80.0))
-    assert flat.edge_distance(18.0, 0.5, (sin(0.3), 0.0, cos(0.3))) == pytest.approx((flat.rim - 0.8) * 18.0, rel=1e-12)
-    assert flat.edge_distance(18.0, 0.5) == pytest.approx((flat.rim - 0.5) * 18.0, rel=1e-12)
-
-
 @pytest.mark.parametrize(
     ("angles", "operative", "anatomical"),
     [

@@ -6,7 +6,7 @@ from scipy.integrate import quad
 
 from ballsocket.evidence.question import read_question
 from ballsocket.identification.file import read_identify
-from ballsocket.problem.gaps import GAP_KINDS, CircularGap, LinearGap, check_gap
+from ballsocket.problem.gaps import GAP_KINDS, CircularGap, LinearGap
 from ballsocket.studies.file import read_study
 
 ANGLES = np.array([0.05, 0.4, 0.9, 1.3])
@@ -70,15 +70,6 @@ def test_gaps_agree_for_small_indentations():
     np.testing.assert_allclose(
         circular.displacement(ANGLES, 2e-4), linear.displacement(ANGLES, 2e-4), rtol=0.0, atol=(3e-4) ** 2 / 17
     )
-
-
-def test_other_gaps_are_rejected():
-    check_gap(LinearGap)
-    check_gap(CircularGap)
-    check_gap(None)
-    for value in (GAPS[0], "linear"):
-        with pytest.raises(TypeError, match="gap must be LinearGap or CircularGap, or None .*, got "):
-            check_gap(value)
 
 
 FILES = {

@@ -94,24 +94,6 @@ def equal_to_undisturbed(store):
     return all(found[name].values.tobytes() == whole[name].values.tobytes() for name in names)
 
 
-def test_files_that_may_not_grow_stop_the_command_with_one_sentence(start):
-    """A real failure of the system's: no file may be larger than 20 kB."""
-    pytest.importorskip("resource", reason="no limits of resources")
-    limited = f"""
-import resource, sys
-sys.dont_write_bytecode = True  # Python would keep compiled modules that end at the limit
-resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
-{MAIN}
-"""
-    words = {"model": "hess-forsbach", "clearances": 100, "radii": 100, "engine": "serial"}
-    process = start(code=limited, **words)
-    _, errors = process.communicate(timeout=PATIENCE)
-    assert process.returncode == 2
-    assert "File too large; 0 of" in errors
-    assert "Traceback" not in errors
-    assert start(**words).wait(timeout=PATIENCE) == 0
-
-
 def test_a_study_stopped_at_random_changes_of_its_store_is_that_of_an_undisturbed_one(tmp_path, start):
     """The first stop is Ctrl-C, the others are kills, each among the 24 changes of the next block."""
     store, draw = tmp_path / "s.zarr", random.Random(1)

@@ -96,14 +96,6 @@ def test_inside_the_contact_the_surface_follows_the_ball(gap):
     assert np.all(contact.displacement(beyond) > imposed(beyond, d))  # the surfaces do not touch outside
 
 
-def test_pressure_vanishes_at_the_edge_as_a_square_root():
-    contact = bs.Exact().press(RIGID, force=3000.0)
-    p = contact.pressure(contact.half_angle * (1 - np.array([1e-6, 1e-4])))
-    assert p[1] / p[0] == pytest.approx(10.0, rel=2e-3)
-    assert contact.pressure(contact.half_angle * 1.0001) == 0.0
-    assert contact.pressure(np.pi) == 0.0
-
-
 @pytest.mark.parametrize("tolerance", some([1e-6, 1e-9, 1e-3], 1))
 def test_the_error_estimate_holds(tolerance):
     rng = np.random.default_rng(11)
@@ -144,12 +136,6 @@ def test_stresses_are_the_pressure_at_the_surface_and_balance_the_load_at_any_de
     stress = contact.stress(angle, 0.0)
     np.testing.assert_allclose(-stress.radial, contact.pressure(angle), atol=1e-4 * contact.max_pressure)
     np.testing.assert_allclose(stress.shear, 0.0, atol=1e-9)
-    inside = contact.stress(angle, 2.0)
-    first, second, third = inside.principal
-    assert np.all((first >= second) & (second >= third))
-    np.testing.assert_allclose(first + second + third, inside.radial + inside.meridional + inside.hoop, rtol=1e-12)
-    spread = ((first - second) ** 2 + (second - third) ** 2 + (third - first) ** 2) / 2
-    np.testing.assert_allclose(inside.von_mises, np.sqrt(spread), rtol=1e-12)
     assert {type(part) for part in vars(contact.stress(angle=0.1, depth=1.0)).values()} == {float}
     x, w = np.polynomial.legendre.leggauss(400)
     angle = np.arccos(x)
@@ -235,12 +221,9 @@ def test_a_circular_ball_ends_at_its_equator():
     assert np.isnan(wide.max_pressure[1:]).all()
 
 
-@pytest.mark.parametrize(
-    ("joint", "gap", "deepest"),
-    [(HIP, bs.LinearGap, 0.04), (HIP, bs.CircularGap, 0.04), (LOOSE, bs.CircularGap, 0.9 * EQUATOR)],
-)
-def test_energy_is_the_work_and_stiffness_the_slope(joint, gap, deepest):
-    d, model = deepest * np.array([0.125, 0.5, 1.0]), bs.Exact(gap=gap, tolerance=1e-9)
+@pytest.mark.parametrize(("joint", "deepest"), [(HIP, 0.04), (LOOSE, 0.9 * EQUATOR)], ids=["hip", "to the equator"])
+def test_energy_is_the_work_and_stiffness_the_slope_of_a_circular_ball(joint, deepest):
+    d, model = deepest * np.array([0.125, 0.5, 1.0]), bs.Exact(gap=bs.CircularGap, tolerance=1e-9)
     step = 1e-4 * d
     above, here, below = (model.press(joint, indentation=x) for x in (d + step, d, d - step))
     np.testing.assert_allclose((above.energy - below.energy) / (2 * step), here.force, rtol=1e-6)
@@ -274,17 +257,6 @@ def test_errors_grow_with_the_slopes_of_a_point_contact(kind):
     for name, share in shares.items():
         excess = (error[name] - error[kind]) / (error["energy"] - error[kind])
         assert excess == pytest.approx(share / shares["energy"], rel=0.02), name
-
-
-@pytest.mark.parametrize("kind", ["force", "indentation"])
-def test_half_angles_are_estimated_within_a_fifth_of_a_percent(kind):
-    """Below the knots the estimate is the power law of a point contact, with the logarithm of its slope."""
-    curve = curve_of(bs.Exact(), HIP)
-    state = curve.state(np.radians(np.linspace(0.3, 84.0, 40)), 20)
-    estimate = curve._estimate_angle(kind, getattr(state, kind))
-    np.testing.assert_allclose(estimate, state.half_angle, rtol=2e-3)
-    tiny = curve.state(np.radians([0.05, 0.1]), 20)
-    np.testing.assert_allclose(curve._estimate_angle(kind, getattr(tiny, kind)), tiny.half_angle, rtol=0.02)
 
 
 def test_the_peak_stress_is_the_largest_of_a_fine_search():

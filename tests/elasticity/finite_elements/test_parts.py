@@ -3,7 +3,6 @@
 from dataclasses import replace
 from itertools import product
 from math import inf, pi, radians
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,7 +15,7 @@ from ballsocket.elasticity.finite_elements import load_search, solver
 from ballsocket.elasticity.finite_elements.bodies import ball_body, socket_body
 from ballsocket.elasticity.finite_elements.harmonics import Harmonics, socket_harmonics
 from ballsocket.elasticity.finite_elements.load_search import ContactBracket
-from ballsocket.elasticity.finite_elements.mesh import Resolution, SocketShape, graded_points, socket_shape
+from ballsocket.elasticity.finite_elements.mesh import Resolution, SocketShape, socket_shape
 from ballsocket.elasticity.finite_elements.pair_contact import FullContact, partial_contact
 from ballsocket.elasticity.finite_elements.solver import load_curve_of
 from ballsocket.evidence.code_checks import polar_components, shell_block, strain_energy_error, thick_sphere_error
@@ -127,38 +126,6 @@ def test_a_contact_of_few_elements_has_a_pole_pressure(pair, elements):
     assert contact.last <= 3
     exact = bs.Exact().press(RIGID, half_angle=half_angle)
     assert contact.pole_pressure == pytest.approx(exact.pole_pressure, rel=0.02)
-
-
-def test_resolutions_of_adapted_and_uniform_elements():
-    classes = COARSE.classes(1.5, 18.0)
-    assert len(classes) == 25
-    np.testing.assert_allclose(np.divide(classes[1:], classes[:-1]), np.sqrt(0.5))
-    uniform = bs.Uniform(size=0.09)
-    assert uniform.classes(1.5, 18.0) == (1.5, pytest.approx(12 * 0.09 / 18.0))
-    assert uniform.classes(0.01, 18.0)[1] == pytest.approx(0.005)
-    for coarse, expected in (  # size, reach, growth, widest, deepest, order, halvings
-        (bs.Adapted(elements=60).coarse(0.9, 18.0, 6.75, 2), (0.03, 1.08, 1.3, pi / 12, 1 / 3, 2, 0)),
-        (bs.Adapted(elements=60).coarse(0.9, 18.0, 0.36, 2), (0.01, 1.08, 1.3, pi / 12, 1 / 3, 2, 0)),
-        (bs.Adapted(elements=120).coarse(0.9, 18.0, 6.75, 1), (0.015, 1.08, 1.3**0.5, pi / 24, 1 / 6, 1, 0)),
-        (COARSE.coarse(0.9, 18.0, 6.75, 1), (0.075, 1.08, 1.3**2.5, 2.5 * pi / 12, 0.5, 1, 0)),
-        (uniform.coarse(0.9, 18.0, 6.75, 1), (0.01, inf, 1.03, 0.01, 1 / 3, 1, 0)),
-    ):
-        assert tuple(vars(coarse).values()) == pytest.approx(expected)
-
-
-@pytest.mark.parametrize(("order", "richardson", "factor"), [(1, 1.0, 3.0), (2, 3.0, 1.0)])
-def test_errors_are_extrapolated_and_bounded_from_below(order, richardson, factor):
-    fine, coarse = (
-        SimpleNamespace(edge_element=np.array([0.1]), **dict.fromkeys(solver.QUANTITIES, np.array([value])))
-        for value in (1.0, 1.6)
-    )
-    errors = solver.estimate_errors("force", fine, coarse, order)
-    assert errors["force"] == 0
-    assert errors["energy"] == pytest.approx(2.0 * 0.6 / richardson)
-    bounded = solver.estimate_errors("force", fine, fine, order)
-    shares = {"stiffness": 1.0, "half_angle": 0.7, "indentation": 0.03, "energy": 0.07, "pressure_integral": 0.02}
-    shares |= {"force": 0.0, "max_pressure": 0.2, "pole_pressure": 0.2}
-    assert bounded == pytest.approx({name: share * factor * 0.01 for name, share in shares.items()})
 
 
 def test_the_stress_near_a_rim_is_solved_for():
@@ -340,26 +307,9 @@ def test_sliding_layers_move_together_across_the_interface_and_freely_along_it_a
     np.testing.assert_array_equal(along[inner + 1 :], 0.0)
 
 
-def test_a_chamfer_removes_only_the_edge_of_the_bore():
-    mesh = socket_body(socket(LINER, rim=1.5, chamfer=0.1), resolution(reach=2.0, growth=1.2)).elastic.block
-    bore = mesh.radius[:, 0]
-    np.testing.assert_allclose(bore[mesh.angle <= 1.4 + 1e-12], 1.0)
-    assert bore[-1] == pytest.approx(1.1)
-    np.testing.assert_allclose(mesh.radius[:, -1], 1.3)
-
-
 def test_the_equator_of_the_ball_is_fixed_axially_and_free_radially():
     body = ball_body(0.3, resolution())
     mesh = body.elastic.block
     moved = body.displacements(np.ones(len(body.contact)))
     np.testing.assert_array_equal(moved[mesh.number[-1], 0], 0.0)  # u_φ is the axial displacement there
     assert abs(moved[mesh.number[-1, 1:], 1]).min() > 0
-
-
-@pytest.mark.parametrize("end", [3.0, -1.0])
-def test_graded_points_have_the_stated_ends_and_growing_steps(end):
-    places = graded_points(1.0, end, 0.1, 1.3, 0.5)
-    assert places[[0, -1]] == pytest.approx((1.0, end), rel=1e-14)
-    steps = abs(np.diff(places))
-    assert np.all(np.diff(steps) > -1e-12)
-    assert steps[0] == pytest.approx(0.1, rel=0.35)

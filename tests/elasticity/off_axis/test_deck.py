@@ -104,17 +104,6 @@ def test_deck_scales_its_displacement_and_stiffness_loads_the_inner_face_and_fix
     assert node_set("PUSHED") == sorted(numbers_of(DECK.ball.number))
 
 
-def test_elements_fill_the_half_shell():
-    """Wedges at the pole and bricks elsewhere use every node of the socket."""
-    socket = DECK.socket
-    elements = list(socket.elements())
-    assert [number for number, *_ in elements] == list(range(1, len(elements) + 1))
-    assert len(elements) == (len(socket.polar) - 1) * (len(socket.azimuth) - 1) * (len(socket.radius) - 1)
-    assert all(kind == ("C3D20R" if i else "C3D15") for _, kind, (i, _, _), _ in elements)
-    assert {node for *_, nodes in elements for node in nodes} == numbers_of(socket.number)
-    assert next(DECK.ball.elements())[0] == len(elements) + 1
-
-
 def test_elements_divide_the_angles_evenly_grow_by_half_across_an_interface_and_are_three_in_a_thin_layer():
     """The backing is thick enough to continue the growth of the liner's elements."""
     assert np.diff(DECK.socket.radius) == pytest.approx(np.full(3, JOINT.liner_thickness / 3))
