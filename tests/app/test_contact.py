@@ -211,10 +211,11 @@ def test_a_report_is_printed_with_the_address_of_the_server(monkeypatch):
         self._heard(key, RunFinished(b"%PDF") if len(printed) == 1 else RunRefused(why="WeasyPrint is not installed"))
 
     monkeypatch.setattr(Job, "ask", ask)
-    page = Page("preset=hip-28&load.force=3000", origin="https://explorer.example")
+    page = Page("preset=hip-28&load.force=3000", origin="https://explorer.example", logo="data:image/png;base64,UE5H")
     assert saved(page, "PDF") == b"%PDF"
     html, paper = printed[0]
     assert "https://explorer.example/?preset=hip-28" in html
+    assert "src='data:image/png;base64,UE5H'" in html
     assert html.index("id='checks'") < html.index("id='drawing'")
     assert paper == "A4"
     does(page, "edit", name="units", value="imperial")

@@ -169,7 +169,7 @@ def test_a_logo_is_a_picture_inside_the_page(tmp_path):
 
 
 def page_of(logo):
-    return serve.page_files(logo)["page.html"][1]
+    return serve.explorer([], logo).settings["files"]["page.html"][1]
 
 
 def test_files_are_compressed_and_are_sent_once(address):

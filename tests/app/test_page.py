@@ -400,8 +400,8 @@ def test_ticks_and_levels_are_round_and_enclose_the_values_and_crosses_mark_some
     marked[:, 40:] = True
     (drawn,) = plane.crosses(marked)
     places = [float(x) + 3 for x in re.findall(r"M([\d.]+),", drawn)]
-    assert len(places) == 2 * 16 * 6  # a light cross below each dark one
-    assert min(places) == pytest.approx(plane.across(40 / 60), abs=0.06)
+    assert len(places) == 2 * 15 * 5  # a light cross below each dark one
+    assert min(places) == pytest.approx(plane.across(42 / 60), abs=0.06)
 
 
 OWN = "joint.ball_radius=14&joint.clearance=.1&joint.liner_thickness=5&liner.material=UHMWPE"

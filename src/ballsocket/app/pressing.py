@@ -40,6 +40,7 @@ _ANGLE_STEP = 0.02  # step in rad of the largest half angle of a curve, which st
 _SLOWEST_SCATTERED = 1e-4  # s a press of models that press the hundreds of joints within tolerances
 _AXIS_ENDS = 1, 1.5, 2, 3, 5, 7, 10  # times a power of ten
 _SMALLEST_AXIS = 1e-300  # number below which powers of ten lose digits
+AXIAL_CURVES = sentence("Curves: for loads along the axis of a full sphere.")
 Profile = tuple[numpy.ndarray, numpy.ndarray, bool]  # angles (rad), pressures (MPa), and True where they can be trusted
 
 

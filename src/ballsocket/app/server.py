@@ -120,8 +120,8 @@ class _Missing(_Guarded):
 _KINDS = {".html": "text/html; charset=UTF-8", ".js": "text/javascript; charset=UTF-8", ".css": "text/css"}
 
 
-def page_files(logo: Path | None = None) -> dict[str, tuple[str, str]]:
-    """Read the files of the page, with a logo for clients: kind and content by name."""
+def page_files(logo: str = "") -> dict[str, tuple[str, str]]:
+    """Read the files of the page, with the logo at an address for clients: kind and content by name."""
     room = files("ballsocket")
     drawing = room / "reports" / "templates" / "drawing.css"  # of the section, which reports have, too
     contents = {file.name: file.read_text(encoding="utf-8") for file in (*(room / "app" / "assets").iterdir(), drawing)}
@@ -130,7 +130,7 @@ def page_files(logo: Path | None = None) -> dict[str, tuple[str, str]]:
     modules = {name: contents.pop(name) for name in sorted(contents) if name.endswith(".js")}
     contents["page.js"] = _script(modules)
     parts = {
-        "<!--logo-->": "" if logo is None else f'<img class="logo" alt="" src="{logo_address(logo)}">',
+        "<!--logo-->": f'<img class="logo" alt="" src="{logo}">' if logo else "",
         "<!--views-->": _buttons("view", {name: kind.title for name, kind in kinds.items()}),
         "<!--files-->": _buttons("file", {kind: kind for kind in FILE_KINDS}),
         "<!--sections-->": "".join(
@@ -256,7 +256,7 @@ class PageSocket(_Guarded, WebSocketHandler):
             self._write(json.dumps({"n": request["n"], "question": 0, "#trouble": alert(words)}))
             return
         origin = self.request.headers.get("Origin", "")  # `check_origin` knows this name
-        self.page = Page(str(request.get("query", "")), self._write, request["n"], origin)
+        self.page = Page(str(request.get("query", "")), self._write, request["n"], origin, self.settings["logo"])
 
     async def _wait_for_turn(self) -> None:
         """Wait until this browser has read its last answer and its rate is within the limit; let others go first."""
@@ -281,12 +281,14 @@ class PageSocket(_Guarded, WebSocketHandler):
 
 
 def explorer(names: Iterable[str], logo: Path | None = None) -> Application:
-    """Return the application that answers to the given host names; its client view has the logo."""
+    """Return the application that answers to the given host names; its client view and its reports have the logo."""
+    address = "" if logo is None else logo_address(logo)
     return Application(
         [("/", _File), (r"/assets/([\w.]+)", _File), ("/socket", PageSocket)],
         default_handler_class=_Missing,
         names=HostNames(names),
-        files=page_files(logo),
+        files=page_files(address),
+        logo=address,
         sockets=PageSockets(),
         compress_response=True,
         log_function=lambda handler: None,  # an address holds a joint
@@ -338,8 +340,8 @@ def server(
 
     Other machines reach it only if `address` is not the loopback. `origins` are hosts under which browsers may reach
     it, such as "hips.example.org:5006", beside this machine's own names. `show` opens a browser at the query `link`,
-    "?...". `logo` is a picture, PNG or SVG, on top of the client view. Raises ValueError for an invalid port, address
-    or logo, and OSError if the port is taken or the logo cannot be read.
+    "?...". `logo` is a picture, PNG or SVG, on top of the client view and of reports. Raises ValueError for an invalid
+    port, address or logo, and OSError if the port is taken or the logo cannot be read.
     """
     require("port", port, 0 <= port <= 65535, "a port is 0 to 65535")
     try:

@@ -33,16 +33,22 @@ _UNITS = ((Units.SI.value, "mm, N, MPa"), (Units.IMPERIAL.value, "in, lbf, psi")
 class Page:
     """Page of one user, for the query of its address; errors in the query are shown on the page.
 
-    `write` sends a message to its browser, and `number` is that of the request that opened it.
+    `write` sends a message to its browser, and `number` is that of the request that opened it. Reports have the `logo`
+    at an address.
     """
 
     def __init__(
-        self, query: str, write: Callable[[str], None] = lambda text: None, number: int = 0, origin: str = ""
+        self,
+        query: str,
+        write: Callable[[str], None] = lambda text: None,
+        number: int = 0,
+        origin: str = "",
+        logo: str = "",
     ) -> None:
         self.channel = Channel(self._handle_request, write)
         self._substitute: Screen | None = None  # shown in place of a link that cannot be read
         self.screen = self._read(query)
-        self._origin = origin
+        self._origin, self._logo = origin, logo
         self._views: dict[str, View] = {}
         self._actions: dict[str, Reader] = {
             "designs.save": lambda links: self.send_file("designs.toml", session_text(_links(links)).encode("utf-8")),
@@ -268,6 +274,7 @@ class Page:
             link=f"{self._origin}/?{self.screen.link}",
             document=self.view.document(self.screen),
             units=self.screen.reading.units,
+            logo=self._logo,
         )
 
     def leave(self) -> None:

@@ -150,13 +150,14 @@ class View(ABC):
 
 @dataclass(frozen=True, kw_only=True)
 class ScreenContent:
-    """Title of the view, joint, link, document and units on the screen."""
+    """Title of the view, joint, link, document, units and the address of the logo on the screen."""
 
     title: str
     file: JointFile
     link: str
     document: Document
     units: Units = Units.SI
+    logo: str = ""
 
 
 def make_file(content: ScreenContent, kind: str) -> tuple[str, bytes]:
@@ -188,7 +189,9 @@ def _report(content: ScreenContent) -> bytes:
     lede = f"{document.lede()}<p class='quiet'>In the explorer: <code>{escape(content.link)}</code></p>"
     written = {name: (head, content_html(content)) for name, (head, content) in document.sections().items()}
     sections = {**({"figure": ("Figure", figure)} if figure else {}), **written}
-    page = joint_report(content.file, sections, lede, content.units, contact=document.contact, title=title)
+    page = joint_report(
+        content.file, sections, lede, content.units, contact=document.contact, title=title, logo=content.logo
+    )
     return page.encode("utf-8")
 
 

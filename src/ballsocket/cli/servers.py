@@ -32,7 +32,7 @@ def explorer(
         ),
     ] = None,
     logo: Annotated[
-        Path | None, typer.Option(help="Picture (PNG, SVG) on top of the page in the client view. Default: none.")
+        Path | None, typer.Option(help="Picture (PNG, SVG) on top of the client view and of reports. Default: none.")
     ] = None,
     browser: Annotated[bool, typer.Option(help="Open the page in a browser.")] = True,
 ) -> None:

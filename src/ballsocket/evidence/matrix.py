@@ -283,7 +283,7 @@ def number(value: Any) -> str:
 def amount_text(quantity: Quantity, value: float | None, units: Units = Units.SI) -> str:
     """Write a number of the record, which is in the unit of files, with its unit."""
     unit = units.of_text(quantity.written.text)
-    return f"{number(None if value is None else value * unit.factor)} {unit.text}".strip()
+    return f"{number(None if value is None else value * unit.factor)} {unit.text}".strip().replace(" °", "°")
 
 
 def limit_text(limit: Mapping[str, Any], units: Units = Units.SI) -> str:

@@ -251,7 +251,7 @@ def _both_ways(x1: float, y1: float, x2: float, y2: float) -> str:
 
 
 def _labelled_value(name: str, value: str, x: float, y: float, anchor: str) -> str:
-    return svg.text(x, y, name, "quiet", anchor) + svg.text(x, y + 17, value, "value", anchor)
+    return svg.text(x, y, name, "quiet", anchor) + svg.text(x, y, value, "value", anchor, ' dy="1.2em"')
 
 
 def _dimensions(file: JointFile, frame: DrawingFrame, units: Units) -> Iterator[str]:
@@ -269,7 +269,7 @@ def _dimensions(file: JointFile, frame: DrawingFrame, units: Units) -> Iterator[
     yield _arrow(492.0, gap[1] + 12, *gap, "dim", 6.0)
     yield _labelled_value(name, f"⌀ {units.length(2 * float(fit))}", 496.0, gap[1] + 8, "start")
     if times > 1:
-        yield svg.text(496.0, gap[1] + 42, f"drawn × {times}", "quiet", "start")
+        yield svg.text(496.0, gap[1] + 8, f"drawn × {times}", "quiet", "start", ' dy="2.5em"')
 
     thickness, angle = float(joint.liner_thickness), -min(rim, radians(62.0))
     inner, outer = frame.at(radii[0], angle), frame.at(radii[1], angle)

@@ -136,8 +136,11 @@ def _common_details(designs: Sequence[PressedDesign]) -> ReportDetails:
     return ReportDetails(**{name: Text(text_of(name)) for name in HEAD_TEXTS}, logo=next(iter(logos), None))
 
 
-def _page(title: str, sections: TitledHtml, details: ReportDetails, day: date | None, lede: str = "") -> str:
-    return render_page("joint_report.html", title, sections, lede=trusted_html(lede), **letterhead(details, day))
+def _page(
+    title: str, sections: TitledHtml, details: ReportDetails, day: date | None, lede: str = "", logo: str = ""
+) -> str:
+    head = letterhead(details, day) | ({"logo": logo} if logo else {})
+    return render_page("joint_report.html", title, sections, lede=trusted_html(lede), **head)
 
 
 def joint_report(
@@ -148,15 +151,16 @@ def joint_report(
     contact: Contact | None = None,
     day: date | None = None,
     title: str = "",
+    logo: str = "",
 ) -> str:
     """Return the page of a joint without axes as HTML that needs no other file.
 
     Below `lede`, which is HTML, the page has the checks of the contact, a drawing with its pressure, the inputs, the
-    given sections (title and HTML by id), and the joint file. By default its date is today, and its title the
-    joint's name.
+    given sections (title and HTML by id), and the joint file. By default its date is today, its title the joint's
+    name, and its logo that of the file; another one is given by its address.
     """
     everything = _joint_sections(file, dict(sections), units, contact)
-    return _page(title or file.joint.name or "A ball in its socket", everything, file.report, day, lede)
+    return _page(title or file.joint.name or "A ball in its socket", everything, file.report, day, lede, logo)
 
 
 def _joint_sections(

@@ -65,10 +65,14 @@ def section_figure(contact: MeshedContact, exact: Contact | None = None) -> Figu
 
 def section_picture(contact: MeshedContact) -> dict[Units, str]:
     """Draw mesh and von Mises stress in section as SVG of a page with a theme, in each system of units."""
-    figure = new_figure(5.2, 4.0)
+    from matplotlib import rc_context
+
+    figure = new_figure(4.4, 3.4)
     _draw_section(figure, figure.subplots(), contact)
     label = "mesh and von Mises stress in section"
-    return {units: svg.themed(drawing, label) for units, drawing in bytes_by_units(figure, "svg").items()}
+    with rc_context({"svg.fonttype": "none"}):  # text for the font of the page, not outlines
+        drawings = bytes_by_units(figure, "svg")
+    return {units: svg.themed(drawing, label) for units, drawing in drawings.items()}
 
 
 def _draw_section(figure: Figure, axes: Axes, contact: MeshedContact) -> None:
@@ -140,8 +144,8 @@ def _name_parts(axes: Axes, contact: MeshedContact, extent: float) -> None:
         text = f"{part.name}: {label}" if label else part.name
         x, y = part.position[:, nearest]
         arrow = {"arrowstyle": "-", "lw": 0.6, "color": "0.2", "relpos": (1.0, 0.5)}
-        where = (0.02, 0.98 - 0.07 * number)
-        axes.annotate(text, (-x, y), where, textcoords="axes fraction", fontsize=7, va="top", arrowprops=arrow)
+        where = (0.02, 0.98 - 0.08 * number)
+        axes.annotate(text, (-x, y), where, textcoords="axes fraction", fontsize=8, va="top", arrowprops=arrow)
     arc = numpy.degrees(contact.model.cup.arc_of_cover)
     zone = "; line: edge of the plastic zone" if contact.section["liner"].plastic_strain.any() else ""
     axes.set_title(f"arc of cover {arc:.4g}°, outside {joint.support.value}{zone}", fontsize=8)

@@ -106,7 +106,9 @@ export function charts({ charts: all, legend }, place) {
   const row = element("div", { class: all.length > 1 ? "pair" : "" }, ...figures);
   if (!legend) return row;
   const names = all[0].curves.map(({ name, line }) => element("span", { class: "key" }, swatch(line), name));
-  const words = legend.map((text) => element("span", { class: "key" }, text));
+  const thin = all.some(({ curves }) => curves.some(({ trusted }) => [trusted].flat().includes(0)));
+  const words = [...legend, ...(thin ? ["thin: the model is not valid there"] : [])]
+    .map((text) => element("span", { class: "key" }, text));
   return element("div", {}, row, element("p", { class: "legend" }, ...names, ...words));
 }
 /** @param {Chart} chart */

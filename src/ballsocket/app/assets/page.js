@@ -11,6 +11,7 @@ const LOST = "Connection lost. These numbers may not belong to the inputs; recon
 const page = document.body;
 /** @param {string} id  @returns {any} */
 const at = (id) => document.getElementById(id);
+const SMALL = 0.85, LARGE = 1.15; // sizes of the text of a picture, of that in which it is drawn
 const CLIENT = "ballsocket.client"; // key of the plain form for clients in the storage of the browser
 const filled = new Set(); // elements that the server has filled
 const TABLE = "ballsocket.table"; // key of the latest table of a cycle in the storage of this window
@@ -114,6 +115,19 @@ function fitTables() {
     place.classList.add("cards");
   }
 }
+/** Keep the text of pictures that are shown smaller or larger than they are drawn near the size of other text. */
+function fitText() {
+  /** @type {NodeListOf<SVGSVGElement>} */
+  const pictures = document.querySelectorAll(".view:not([hidden]) :is(.picture, .triad)");
+  for (const { parentElement, viewBox, clientWidth } of pictures) {
+    const share = clientWidth / viewBox.baseVal.width;
+    parentElement.style.setProperty("--grow", String(Math.min(LARGE / share, Math.max(1, SMALL / share))));
+  }
+}
+function fit() {
+  fitTables();
+  fitText();
+}
 function setTheme(name) {
   page.classList.remove("light", "dark");
   page.classList.add(name);
@@ -160,8 +174,8 @@ document.addEventListener("click", (event) => {
 });
 new MutationObserver(() => { at("lost").textContent = page.dataset.lost ? LOST : ""; })
   .observe(page, { attributeFilter: ["data-lost"] });
-new ResizeObserver(fitTables).observe(at("view"));
-at("press-all").addEventListener("change", fitTables);
-document.addEventListener("shown", fitTables);
+new ResizeObserver(fit).observe(at("view"));
+at("press-all").addEventListener("change", fit);
+document.addEventListener("shown", fit);
 // answers first where there is little room
 if (innerWidth <= 820) document.querySelector(".side").removeAttribute("open");

@@ -218,6 +218,7 @@ class Viewer {
     });
     this.tools.addEventListener("input", () => this.draw());
     new ResizeObserver(() => this.draw()).observe(this.stage);
+    new MutationObserver(() => this.draw()).observe(document.body, { attributeFilter: ["class"] }); // the theme
   }
   get load() { return this.data.loads[this.frame] || this.data.loads[0]; }
   show(place) {

@@ -50,9 +50,9 @@ class MapPlane:
 
     def crosses(self, marked: numpy.ndarray) -> Iterator[str]:
         """Draw crosses on some of the marked points of a mask (y, x)."""
-        spacing = [max(1, round(size / 15)) for size in marked.shape]
-        rows, columns = numpy.nonzero(marked[:: spacing[0], :: spacing[1]])
-        points = zip(self.across(self.x[columns * spacing[1]]), self.up(self.y[rows * spacing[0]]), strict=True)
+        rows, columns = (numpy.arange(size)[size // 30 :: max(1, round(size / 15))] for size in marked.shape)
+        which = numpy.nonzero(marked[numpy.ix_(rows, columns)])
+        points = zip(self.across(self.x[columns[which[1]]]), self.up(self.y[rows[which[0]]]), strict=True)
         lines = "".join(f"M{x - 3:.1f},{y - 3:.1f}l6,6m0,-6l-6,6" for x, y in points)
         if lines:
             yield outlined("path", "doubt", f'd="{lines}"')
@@ -78,8 +78,9 @@ def contour_map(
     labels: tuple[str, str],
     marks: Iterable[str],
     event: str,
+    veils: Iterable[str] = (),
 ) -> str:
-    """Draw values (y, x) in colours with axes, a colour scale and marks on top.
+    """Draw values (y, x) in colours, below veils, with axes, a colour scale and marks on top.
 
     `labels` are the label of the values and a sentence for screen readers. The browser reports a picked point as the
     `event` with its two numbers.
@@ -99,6 +100,7 @@ def contour_map(
     parts = [
         f'<rect class="void" {_FRAME}/>',
         *contours.bands(levels),
+        *veils,
         *(part for level in levels[1:-1] if level for part in contours.named(level, f"{level:.4g}")),  # 0 is a limit
         *_axes(plane),
         *marks,

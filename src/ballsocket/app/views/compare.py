@@ -17,7 +17,7 @@ from ...problem.presets import joints
 from ...reports.figure_files import figure_bytes
 from ...reports.press_plots import press_figure
 from ...reports.style import LineStyle, numbered
-from ..pressing import fine_curves, press_charts
+from ..pressing import AXIAL_CURVES, fine_curves, press_charts
 from ..state.screen import MAX_COMPARED, Screen
 from ..view import STRESS_PAUSE, Document, View, field_places
 from ..widgets.blocks import Block, sentence, table
@@ -77,11 +77,15 @@ class Compare(View):
         files = compared_files(screen)
         base = base_of(files, screen)
         designs = _pressed(files, screen)
+        drawn = _contacts(designs)
         differences = f"Behind the numbers: the difference from {base}. The drawings have one scale."
         self.put(
             note=[sentence(f"{'' if screen.beside else _EXAMPLE_SHOWN}{differences}")],
             table=[design_table(with_drawings(designs), base, screen)],
-            charts=[press_charts(_contacts(designs), _lines(files), screen.reading)],
+            charts=[
+                *([] if len(drawn) == len(designs) else [AXIAL_CURVES]),
+                press_charts(drawn, _lines(files), screen.reading),
+            ],
         )
 
         def stressed() -> Block:

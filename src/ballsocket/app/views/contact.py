@@ -22,7 +22,16 @@ from ...reports.press_report import press_lede, press_sections
 from ...reports.style import line_of
 from ..pictures.chart import plain_numbers
 from ..pictures.section import LinerStresses, first_view, key, liner_stresses
-from ..pressing import effects_are_slow, effects_of, fine_curves, is_waiting, load_curve, press_charts, pressed
+from ..pressing import (
+    AXIAL_CURVES,
+    effects_are_slow,
+    effects_of,
+    fine_curves,
+    is_waiting,
+    load_curve,
+    press_charts,
+    pressed,
+)
 from ..solving import heavy
 from ..state.screen import Screen
 from ..view import STRESS_PAUSE, Document
@@ -38,7 +47,6 @@ _EVERY = tuple(catalogue)
 _PAINTED = {"pressure": "pressure", "stress": "von Mises stress"}
 _PAUSE = 0.1  # s without a change until curves and table follow
 _NO_STRESSES = "this model has no stresses inside the liner"
-_AXIAL_CURVES = sentence("Curves: for loads along the axis of a full sphere.")
 _NO_BAND = [sentence("No band from the tolerances here: One input states the reason.")]
 _OFFER = "<p class='quiet'>The contact ends near the rim, where the real cup is softer.</p>"
 
@@ -200,7 +208,7 @@ class Press(RealCupView):
         charts = press_charts(drawn, {name: line_of(name) for name in drawn}, reading)
         if self._needs_cup(screen, comparison):
             table = models_table(_with_real(self._real, comparison), reading)
-            self.put(charts=[_AXIAL_CURVES, charts], table=table)
+            self.put(charts=[AXIAL_CURVES, charts], table=table)
         else:
             self.put(charts=[charts], table=models_table(comparison, reading))
             self._put_curve(screen)

@@ -255,9 +255,9 @@ def map_picture(results: Any, screen: Screen) -> str:
     picked = screen.picked
     x, y = (present_value(screen.file, name) for name in axes)
     margins = relative_margins(results, limits_of(screen), *axes)
-    veils = (plane.contours(values).area(_BELOW_ZERO, 0.0) for values in margins)
+    areas = (plane.contours(values).area(_BELOW_ZERO, 0.0) for values in margins)
+    veils = [f'<path class="veil" fill-rule="evenodd" d="{outline}"/>' for outline in areas if outline]
     marks = [
-        *(f'<path class="veil" fill-rule="evenodd" d="{outline}"/>' for outline in veils if outline),
         *plane.crosses(~results.valid.transpose(*axes[::-1]).values),
         *plane.ring(x * x_factor, y * y_factor, "here"),
         *(() if picked is None else plane.ring(picked[0] * x_factor, picked[1] * y_factor, "picked")),
@@ -266,7 +266,7 @@ def map_picture(results: Any, screen: Screen) -> str:
     levels = svg.levels_between(float(numpy.nanmin(values)), float(numpy.nanmax(values)), _MAX_LEVELS)
     share = 100 * float(allowed_points(results, screen).mean())
     sentence = f"{label} over {x_label} and {y_label}; {share:.3g} % of the map keep the limits"
-    return contour_map(plane, values, levels, (label, sentence), marks, "map.pick")
+    return contour_map(plane, values, levels, (label, sentence), marks, "map.pick", veils)
 
 
 def _limit_lines(results: Any, screen: Screen, plane: MapPlane) -> Iterator[str]:

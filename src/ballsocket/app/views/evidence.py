@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import tempfile
 import zipfile
-from collections.abc import Callable, Hashable, Iterator, Mapping
+from collections.abc import Hashable, Iterator, Mapping
 from dataclasses import dataclass, fields, replace
 from functools import partial
 from html import escape
@@ -67,7 +67,6 @@ class Evidence(LongView):
     def begin(self) -> None:
         super().begin()
         self._folder = ""
-        self._remove: Callable[[], Any] | None = None
         self.actions |= {"evidence.take": self._take, "evidence.allowable": self._limit_allowable}
 
     def question_of(self, screen: Screen) -> Hashable:
@@ -81,9 +80,7 @@ class Evidence(LongView):
             raise ValueError(_NO_LIMIT)
         if not self._folder:
             self._folder = tempfile.mkdtemp(prefix="ballsocket-")
-            self._remove = finalize(
-                self, rmtree, self._folder, ignore_errors=True
-            )  # also with a page that is forgotten
+            finalize(self, rmtree, self._folder, ignore_errors=True)  # of a page that is forgotten
         return partial(gather_pack, screen.asked, screen.file, screen.use, self._folder)
 
     def controls(self, screen: Screen) -> list[Control]:
@@ -135,8 +132,8 @@ class Evidence(LongView):
 
     def leave(self) -> None:
         super().leave()
-        if self._remove is not None:
-            self._remove()
+        if self._folder:
+            rmtree(self._folder, ignore_errors=True)
 
 
 def _limits(question: EvidenceQuestion) -> tuple[Limit, ...]:

@@ -26,7 +26,6 @@ from .design_map import axis_control, checked, end_control, limits_input, study_
 from .map_study import limits_of, models_of, swept
 
 _LIMIT = LineStyle(VERMILLION, (2.0, 1.5))
-_SIZE = (620.0, 360.0)
 
 
 class OneInput(View):
@@ -106,5 +105,5 @@ def result_chart(results: Any, screen: Screen) -> Block:
     top = axis_end(1.05 * max(float(numpy.nanmax(curve.y)) for curve in curves.values()))
     labels, ends = (reading.label(axis), reading.label(quantity)), (float(x[-1]), top)
     red = ["", "red: a limit is exceeded"] if exceeded else []
-    drawn = chart(label, *labels, curves, ends, _SIZE, exceeded, float(x[0]), red)
+    drawn = chart(label, *labels, curves, ends, flagged=exceeded, start=float(x[0]), caption=red)
     return charts(drawn, legend=["● this design"])

@@ -97,7 +97,7 @@ def _law_control(key: str, part: LawField, value: float, title: str, change: Cal
 
     A typed number has a decimal point or comma, with or without its unit.
     """
-    unit = f" [{part.unit.text}]" if part.unit.text else ""
+    unit = f" [{part.unit.text}]".replace("(N m)", "(N\N{NO-BREAK SPACE}m)") if part.unit.text else ""
     step = part.example / 100 or 0.01
 
     def read(text: Any) -> Changes:

@@ -47,7 +47,8 @@ def styled_row(cells: Sequence[Cell], style: str = "", line: LineStyle | None = 
 def answer_blocks(part: Table, units: Units) -> list[Block]:
     """Return the sentences of a described table, and the table."""
     written = grid(part, units)
-    return [*(sentence(units.sentence(line), "") for line in part.lines), table(written.heads_with_units, written.rows)]
+    lines = [sentence(units.sentence(line), "") for line in part.lines]
+    return [*lines, table(written.heads_with_units, written.rows)] if written.rows else lines
 
 
 def numbers(rows: Iterable[Sequence[Any]], style: str = "tiles") -> Block:
@@ -65,7 +66,8 @@ def content_html(content: Content) -> str:
     """Render sentences, lists, checks and tables as HTML for a report."""
     if isinstance(content, str):
         return content
-    return "".join(
-        part if isinstance(part, str) else render_part("parts.html", part["kind"], *list(part.values())[1:])
-        for part in content
-    )
+    return "".join(part if isinstance(part, str) else _rendered(**part) for part in content)
+
+
+def _rendered(kind: str, **arguments: Any) -> str:
+    return render_part("parts.html", kind, **arguments)

@@ -21,7 +21,7 @@ from ..pressing import pressed
 from ..state.screen import Screen
 from ..views.real_cup import is_prepared, pressed_in_cup
 from .blocks import Block, styled_row, table
-from .reading import Reading, number_text
+from .reading import Reading, box_text, number_text
 from .words import VERDICT_KINDS, percent
 
 _DIMENSIONS = {
@@ -133,7 +133,8 @@ def design_rows(
     for name in _DIMENSIONS[screen.size]:
         unit = reading.unit(JOINT[name])
         lengths = [float(getattr(design.file.joint, name)) * unit.factor for design in listed]
-        rows.append((f"{JOINT[name].title}{unit.text_in_brackets}", [Cell(text=f"{length:.5g}") for length in lengths]))
+        cells = [Cell(text=box_text(length, unit.text)) for length in lengths]
+        rows.append((f"{JOINT[name].title}{unit.text_in_brackets}", cells))
     for part in ("liner", "ball"):
         materials = [getattr(design.file.joint, part) for design in listed]
         rows.append((part, [Cell(text=material_label(material, "custom numbers")) for material in materials]))
