@@ -58,7 +58,7 @@ def waited_for(page):
 
 @pytest.fixture(autouse=True)
 def nothing_is_left_running():
-    solving._solved.clear()
+    results.RESULTS._results.clear()
     yield
     assert not running.QUEUE
 

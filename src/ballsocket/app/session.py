@@ -180,8 +180,8 @@ class Page:
             self.refuse(f"This cannot be saved: {error}")
         else:
             if name.endswith(".pdf"):
-                paper = self.screen.reading.units.paper
-                self._printing.ask(name, partial(print_page, content.decode("utf-8"), paper))
+                page, paper = content.decode("utf-8"), self.screen.reading.units.paper
+                self._printing.ask((name, page, paper), partial(print_page, page, paper))
                 return
             self.send_file(name, content)
         self.channel.send()
@@ -190,7 +190,7 @@ class Page:
         if isinstance(news, RunRefused):
             self.refuse(news.why)
         elif isinstance(news, RunFinished):
-            self.send_file(key, news.value)
+            self.send_file(key[0], news.value)
         self.channel.send()
 
     def _upload(self, words: Mapping[str, Any]) -> None:

@@ -5,12 +5,13 @@ from __future__ import annotations
 import io
 import tempfile
 import zipfile
-from collections.abc import Callable, Hashable, Iterator, Mapping
+from collections.abc import Hashable, Iterator, Mapping
 from dataclasses import dataclass, fields, replace
 from functools import partial
 from html import escape
 from math import prod
 from operator import itemgetter
+from os import PathLike
 from pathlib import Path
 from shutil import rmtree
 from typing import Any
@@ -66,8 +67,7 @@ class Evidence(LongView):
 
     def begin(self) -> None:
         super().begin()
-        self._folder = ""
-        self._remove: Callable[[], Any] | None = None
+        self._folder: WorkFolder | None = None
         self.actions |= {"evidence.take": self._take, "evidence.allowable": self._limit_allowable}
 
     def question_of(self, screen: Screen) -> Hashable:
@@ -79,11 +79,7 @@ class Evidence(LongView):
         axes_of(screen.asked, screen.file, screen.use)  # an invalid question is refused at once
         if not screen.asked.limits.strip():
             raise ValueError(_NO_LIMIT)
-        if not self._folder:
-            self._folder = tempfile.mkdtemp(prefix="ballsocket-")
-            self._remove = finalize(
-                self, rmtree, self._folder, ignore_errors=True
-            )  # also with a page that is forgotten
+        self._folder = self._folder or WorkFolder()
         return partial(gather_pack, screen.asked, screen.file, screen.use, self._folder)
 
     def controls(self, screen: Screen) -> list[Control]:
@@ -135,8 +131,7 @@ class Evidence(LongView):
 
     def leave(self) -> None:
         super().leave()
-        if self._remove is not None:
-            self._remove()
+        self._folder = None
 
 
 def _limits(question: EvidenceQuestion) -> tuple[Limit, ...]:
@@ -283,7 +278,23 @@ def axes_of(inputs: EvidenceQuestion, file: JointFile, use: Use) -> dict[str, tu
             raise ValueError(str(error).removeprefix(f"{_QUESTION}: ")) from error
 
 
-def gather_pack(inputs: EvidenceQuestion, file: JointFile, use: Use, folder: str, report: Report) -> EvidencePack:
+class WorkFolder:
+    """Temporary folder that exists as long as a page or a run refers to it; the process of a run gets its path."""
+
+    def __init__(self) -> None:
+        self._path = Path(tempfile.mkdtemp(prefix="ballsocket-"))
+        finalize(self, rmtree, self._path, ignore_errors=True)
+
+    def __fspath__(self) -> str:
+        return str(self._path)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Path, (self._path,)
+
+
+def gather_pack(
+    inputs: EvidenceQuestion, file: JointFile, use: Use, folder: PathLike[str], report: Report
+) -> EvidencePack:
     """Gather evidence in a separate process, reusing the results that the folder holds."""
     path = Path(folder)
     question = write_question(inputs, file, use, path)
