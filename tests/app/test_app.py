@@ -361,7 +361,7 @@ def test_the_cup_turns_and_a_place_on_the_map_is_taken(reader):
     reader.page.mouse.click(place["x"] + 0.5 * place["width"], place["y"] + 0.4 * place["height"])
     reader.until("!location.search.includes('cup.inclination=45.0')")
     reader.answered()
-    inclination = float(reader.page.locator("[data-field='cup.inclination'] input[type=text]").input_value())
+    inclination = float(reader.page.locator("[data-name='cup.inclination'] input[type=text]").input_value())
     assert 40 < inclination < 46
 
 

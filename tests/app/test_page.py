@@ -130,7 +130,7 @@ def test_only_what_has_changed_is_shown_and_sent(monkeypatch):
     assert answer["=load"] == page.channel.shown_value("=load")
     assert answer["=load"]["value"] == 2900
     assert numbers(page, "press-numbers")["force"] == 2900.0
-    assert not {"=clearance", "order", "view", "#trouble"} & set(answer)
+    assert not {"=clearance", "@controls", "view", "#trouble"} & set(answer)
     assert set(edits(page, "load", 2900)) == {"n", "question"}
     monkeypatch.setattr(Press, "show", lambda self, screen: shown.append(screen.size))
     page.ask(view="press")
@@ -184,7 +184,7 @@ def test_a_backing_is_built_from_bone_to_shell_of_at_most_twenty_layers():
     edits(page, "behind.0", "away")
     joint = page.screen.file.joint
     assert joint == bs.joints["hip-28"]  # nothing is left to be free, or to be changed
-    assert "behind.0" not in page.channel.shown_value("order")
+    assert "behind.0" not in page.channel.shown_value("@controls")
     layers = "".join(f"&backing.{place}.material=titanium&backing.{place}.thickness=3" for place in range(19))
     page = Page(f"view=judge&{OWN}{layers}")  # where nothing is pressed
     edits(page, "behind.add", "titanium")

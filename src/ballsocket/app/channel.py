@@ -70,6 +70,11 @@ class Channel:
         if self._current.get(name, "" if name.startswith("#") else None) != value:
             self._current[name] = self._pending[name] = value
 
+    def put_inputs(self, element: str, fields: Mapping[str, Field]) -> None:
+        """Set inputs and their order in an element, by its id."""
+        self.put_fields(fields)
+        self.put(f"@{element}", list(fields))
+
     def put_fields(self, fields: Mapping[str, Field]) -> None:
         for name, field in fields.items():
             value, refusal = self._refused.get(name, (None, {}))

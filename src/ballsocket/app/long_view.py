@@ -22,10 +22,10 @@ if TYPE_CHECKING:
 _EARLIER = "<p class='earlier'>These results belong to earlier inputs.</p>"
 
 
-def long_body(view: str, inputs: str, shown: str) -> str:
+def long_body(view: str, shown: str, more_inputs: str = "") -> str:
     """Return the HTML of a view with its inputs, the button of its work, and the HTML of its results."""
     return (
-        f'<div class="inputs-row">{inputs}</div><div data-field="{view}.run"></div>'
+        f'<div class="inputs-row" id="{view}-inputs">{more_inputs}</div><div data-field="{view}.run"></div>'
         f'<div id="{view}-trouble" role="alert"></div><div id="{view}-earlier" role="status"></div>'
         f'<div class="results">{shown}</div>'
     )

@@ -245,8 +245,7 @@ class Page:
                 chosen(screen, "angle", "Angles in", ANGLES, segments),
             ]
         )
-        self.channel.put_fields(fields_of(self.controls))
-        self.channel.put("order", list(self.controls))
+        self.channel.put_inputs("controls", fields_of(self.controls))
         self.channel.put("#behind", joint_words(screen.file.joint))
         self.channel.put("view", screen.view)
         self.channel.put("link", "" if screen is self._substitute else screen.link)

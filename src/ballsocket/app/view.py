@@ -51,11 +51,6 @@ class Document:
     contact: Contact | None = None
 
 
-def field_places(view: str, keys: Iterable[str]) -> str:
-    """Return the HTML of the places of a view's inputs, by their names without the view."""
-    return "".join(f'<div data-field="{view}.{key}"></div>' for key in keys)
-
-
 class View(ABC):
     """View of the screen, made with its page when it is first opened.
 
@@ -82,7 +77,10 @@ class View(ABC):
         """Show the results for a screen."""
 
     def controls(self, screen: Screen) -> Iterable[Control]:
-        """Return the inputs of the view, named without the view."""
+        """Return the inputs of the view, named without the view, in their order in its element "<view>-inputs".
+
+        Those with an element `data-field` of their name are there.
+        """
         return ()
 
     def named_controls(self, screen: Screen) -> dict[str, Control]:
@@ -91,7 +89,7 @@ class View(ABC):
 
     def show_inputs(self, screen: Screen) -> None:
         """Show the inputs of the view."""
-        self.channel.put_fields(fields_of(self.named_controls(screen)))
+        self.channel.put_inputs(f"{self.name}-inputs", fields_of(self.named_controls(screen)))
 
     def put(self, **parts: Content) -> None:
         """Fill elements of the view with blocks or HTML, by their ids without the view."""

@@ -220,12 +220,13 @@ document.addEventListener("shown", () => {
   const units = Object.fromEntries(UNITS.map((name) => [name, known(name).value]));
   for (const [name, input] of inputs) if (!stale.has(name)) input.units = units;
 });
-export function arrange(names) {
-  const home = document.getElementById("controls");
-  const nodes = names.map((name) => inputs.get(name).node);
+/** Put inputs without a place of their own into an element, in an order. @param {Element | null} home */
+export function arrange(home, names) {
+  if (!home) return;
+  const nodes = names.map((name) => inputs.get(name).node).filter((node) => !node.closest("[data-field]"));
   // those that stay are not moved: one of them may have the focus
   for (const child of /** @type {HTMLElement[]} */ ([...home.children])) {
-    if (nodes.includes(child)) continue;
+    if (nodes.includes(child) || !child.dataset.name) continue;
     for (const box of child.querySelectorAll("input")) delete box.dataset.typing;
     child.remove();
   }

@@ -27,7 +27,7 @@ from ..long_view import LongWork, long_body
 from ..pictures.bore import METRIC, bare_bore, pressed_bore, pressed_viewer
 from ..pictures.contour_map import MapPlane, contour_map, outlined, read_point
 from ..state.screen import STANDINGS, Screen
-from ..view import Document, field_places
+from ..view import Document
 from ..widgets.blocks import Block, Content, numbers, sentence
 from ..widgets.controls import Changes, Control, by_name, capital, chosen, segments
 from ..widgets.joint_controls import cup_controls
@@ -43,7 +43,6 @@ from .real_cup import (
     pressed_in_cup,
 )
 
-_FIELDS = ("inclination", "anteversion", "tilt", "inwards", "forwards", "arc_of_cover", "chamfer", "aim", "side")
 _TYPICAL = {"inclination": 45.0, "anteversion": 15.0}
 _SHOWN = """<div id="cup-numbers"></div><div class="beside">
 <figure><figcaption>Pressure on the cup, seen from its opening</figcaption><div id="cup-map"></div></figure>
@@ -57,10 +56,10 @@ class CupView(RealCupView):
     """View of the load in the present cup, followed by a map over orientations."""
 
     name, title, run_label = "cup", "Cup", "Prepare the cup"
-    body = f"""{long_body("cup", field_places("cup", _FIELDS), _SHOWN)}
+    body = f"""{long_body("cup", _SHOWN)}
 <figure>
   <figcaption>Cup orientation map</figcaption>
-  <div data-field="cup.show"></div>{long_body("cup-stood", "", '<div id="cup-stood"></div>')}
+  <div data-field="cup.show"></div>{long_body("cup-stood", '<div id="cup-stood"></div>')}
 </figure>
 """
 
@@ -83,7 +82,8 @@ class CupView(RealCupView):
 
     def controls(self, screen: Screen) -> list[Control]:
         titles = [(name, QUANTITIES[name].title) for name in STANDINGS]
-        return [*cup_controls(screen), chosen(screen, "standing", "Map of", titles, segments, "show")]
+        *own, _ = cup_controls(screen)  # the interface is an input of the finite elements
+        return [*own, chosen(screen, "standing", "Map of", titles, segments, "show")]
 
     def show(self, screen: Screen) -> None:
         is_prepared(screen.file)

@@ -19,7 +19,7 @@ from ...studies.study_answer import map_table
 from ...studies.task import BOUNDS, EDGE_DISTANCE
 from ..pictures.contour_map import MapPlane, contour_map, outlined, read_point
 from ..state.screen import AXES, MAPPED, PICKED, MapAxis, Screen
-from ..view import Document, View, field_places
+from ..view import Document, View
 from ..widgets.blocks import Content, answer_blocks
 from ..widgets.controls import Changes, Control, choice, chosen, empty_number, parameter, segments
 from ..widgets.design_table import design_table, press_designs, with_drawings, with_stresses
@@ -43,7 +43,6 @@ from .map_study import (
 )
 
 _LIMITED = tuple(dict.fromkeys((*MAPPED, EDGE_DISTANCE, *JOINT, *AXES)))  # quantities that the rows of limits offer
-_FIELDS = ("across", "across_low", "across_high", "quantity", "up", "up_low", "up_high", "model")
 _AXIS_LETTERS, _END_WORDS = {"across": "x", "up": "y"}, {"low": "from", "high": "to"}
 _PRESENT, _PICKED = "this design", "selected point"
 _HINT = (
@@ -97,8 +96,8 @@ class DesignMap(View):
     """View of one quantity over two parameters, computed as one study by a quick model."""
 
     name, title = "map", "Design map"
-    body = f"""
-<div class="inputs-row map-inputs">{field_places("map", _FIELDS)}</div>
+    body = """
+<div class="inputs-row" id="map-inputs"></div>
 <div data-field="map.limits"></div>
 <div id="map-trouble" role="alert"></div>
 <div class="map-layout">
@@ -123,10 +122,14 @@ class DesignMap(View):
 
     def controls(self, screen: Screen) -> list[Control]:
         quantities = [(name, QUANTITIES[name].title) for name in MAPPED]
+        across, up = (
+            [axis_control(screen, which), *(end_control(screen, which, end) for end in _END_WORDS)]
+            for which in _AXIS_LETTERS
+        )
         controls = [
-            *(axis_control(screen, which) for which in _AXIS_LETTERS),
-            *(end_control(screen, which, end) for which in _AXIS_LETTERS for end in _END_WORDS),
+            *across,
             chosen(screen, "quantity", "Map of", quantities),
+            *up,
             chosen(screen, "map_model", "Model", models_of(screen), name="model"),
             chosen(screen, "sizes", "Sizes at a selected point", PICKED, segments),
         ]

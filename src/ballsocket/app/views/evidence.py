@@ -6,7 +6,7 @@ import io
 import tempfile
 import zipfile
 from collections.abc import Hashable, Iterator, Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import partial
 from html import escape
 from math import prod
@@ -45,13 +45,12 @@ from ..pressing import pressed
 from ..running import Reached, Report, Work
 from ..state.screen import EvidenceQuestion, Screen, phrases_in, phrases_of
 from ..state.use import Use
-from ..view import Document, field_places
+from ..view import Document
 from ..widgets.controls import Changes, Control, changed, chosen, segments, text, tolerances_input
 from ..widgets.limit_rows import limits_control, present_value
 from ..widgets.words import VERDICT_KINDS
 
 _NO_YES = ("no", "yes")
-_INPUTS = field_places("evidence", (entry.name for entry in fields(EvidenceQuestion)))
 _LIMITED = ("max_pressure", "half_angle", "edge_distance", "indentation", "area", "utilisation")
 _NO_LIMIT = "Evidence needs a limit to decide on: add one, such as the largest pressure at most 20 MPa"
 _HIP, _QUESTION = "hip.toml", "question.toml"
@@ -63,7 +62,7 @@ class Evidence(LongView):
     """View that gathers evidence for a question and resumes after a stop."""
 
     title, name, run_label, longest = "Evidence", "evidence", "Gather the evidence", EVIDENCE_SECONDS
-    body = long_body("evidence", _INPUTS, '<div id="evidence-found"></div>').replace("inputs-row", "asking")
+    body = long_body("evidence", '<div id="evidence-found"></div>').replace("inputs-row", "asking")
 
     def begin(self) -> None:
         super().begin()

@@ -41,9 +41,8 @@ from .hip_runs import MERIDIANS, RINGS, Frames, GaitFilm, GaitResult, gait_key, 
 
 _LARGEST = 100_000  # characters of a table
 _FILM_SECONDS = 300.0
-_INPUTS = """<div data-field="gait.cycle"></div><div data-field="gait.body_weight"></div>
-<div data-field="gait.contact"></div>
-<div class="field"><label class="label" for="gait-own">Custom cycle (table: phase or time, force, angles)</label>
+_UPLOAD = """<div class="field">
+<label class="label" for="gait-own">Custom cycle (table: phase or time, force, angles)</label>
 <input id="gait-own" type="file" accept=".csv,.txt,.dat,.mot,.sto" data-tell-file="gait.own">
 <button type="button" class="plain" data-tell="gait.sample">Save a sample</button>
 <div id="gait-question" role="alert"></div></div>"""
@@ -66,7 +65,7 @@ class Gait(LongView):
     """View of a cycle that is computed in a process and played by the page; its film follows by itself."""
 
     name, title, run_label, automatic = "gait", "Gait", "Compute the cycle", True
-    body = long_body("gait", _INPUTS, _SHOWN)
+    body = long_body("gait", _SHOWN, _UPLOAD)
 
     def begin(self) -> None:
         super().begin()

@@ -17,7 +17,7 @@ from ...studies.variance_shares import uncertainty_tables
 from ..pictures.chart import Curve, chart, charts, spans
 from ..pressing import axis_end, effects_are_slow, effects_of
 from ..state.screen import MAPPED, Screen
-from ..view import Document, View, field_places
+from ..view import Document, View
 from ..widgets.blocks import Block, Content, answer_blocks, sentence
 from ..widgets.controls import Control, chosen, tolerances_input
 from ..widgets.limit_rows import limit_text, present_value
@@ -33,8 +33,8 @@ class OneInput(View):
     """View of a result over one parameter, computed as a study by a quick model."""
 
     name, title = "curve", "One input"
-    body = f"""
-<div class="inputs-row">{field_places("curve", ("across", "across_low", "across_high", "quantity", "model"))}</div>
+    body = """
+<div class="inputs-row" id="curve-inputs"></div>
 <div data-field="curve.limits"></div>
 <div id="curve-trouble" role="alert"></div>
 <div id="curve-chart"></div>
