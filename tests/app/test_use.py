@@ -413,13 +413,16 @@ def test_what_is_wrong_with_a_question_is_said_in_the_view(name, value, sentence
 
 def test_limits_are_rows():
     page = opened(EVIDENCE)
-    edits(page, "evidence.limits", [["max_pressure", "<=", "20"], ["half_angle", "<=", "60"]])
+    edits(page, "evidence.limits.0.quantity", "max_pressure")
+    edits(page, "evidence.limits.0.value", "20")
+    edits(page, "evidence.limits", True)
+    edits(page, "evidence.limits.1.value", "60")
     assert page.screen.asked.limits.startswith("max_pressure<=20.0; half_angle<=1.047")
-    assert page.channel.shown_value("=evidence.limits")["value"][1] == ["half_angle", "<=", "60"]
+    assert page.channel.shown_value("=evidence.limits")["value"].endswith("half angle at most 60°")
     assert opened(page.channel.shown_value("link")).screen == page.screen
     does(page, "edit", name="units", value="imperial")
-    edits(page, "evidence.limits", [["max_pressure", "<=", "3000"]])
-    (limit,) = evidence._limits(page.screen.asked)
+    edits(page, "evidence.limits.0.value", "3000")
+    limit, _ = evidence._limits(page.screen.asked)
     assert limit.high == pytest.approx(20.68, rel=1e-3)
 
 

@@ -23,7 +23,7 @@ from ..view import Document, View
 from ..widgets.blocks import Content, answer_blocks
 from ..widgets.controls import Changes, Control, choice, chosen, empty_number, parameter, segments
 from ..widgets.design_table import design_table, press_designs, with_drawings, with_stresses
-from ..widgets.limit_rows import limit_text, limits_control, present_value
+from ..widgets.limit_rows import limit_controls, limit_text, present_value
 from ..widgets.reading import Reading, box_text
 from ..widgets.words import alert, column_of
 from .compare import with_compared
@@ -135,7 +135,7 @@ class DesignMap(View):
         ]
         return [
             *(Control(control.field, checked(screen, control.read, _AXIS_LETTERS)) for control in controls),
-            limits_input(screen, mapped),
+            *limit_inputs(screen, mapped),
         ]
 
     def show(self, screen: Screen) -> None:
@@ -198,7 +198,7 @@ def checked(screen: Screen, read: Callable[[Any], Changes], varied: Iterable[str
     return checked
 
 
-def limits_input(screen: Screen, study_of: Callable[[Screen], Any]) -> Control:
+def limit_inputs(screen: Screen, study_of: Callable[[Screen], Any]) -> list[Control]:
     """Return the rows of limits of a study of the screen; those that the joint does not have are refused."""
 
     def present(name: str) -> float:
@@ -209,7 +209,7 @@ def limits_input(screen: Screen, study_of: Callable[[Screen], Any]) -> Control:
         allowed(study_of(screen), limits_of(replace(screen, limits=limits)))
         return {"limits": limits}
 
-    return limits_control(_LIMITED, screen.limits, screen.reading, present, change)
+    return limit_controls(_LIMITED, screen.limits, screen.reading, present, change)
 
 
 def _drawn(screen: Screen) -> dict[str, Content]:

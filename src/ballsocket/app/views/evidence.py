@@ -47,7 +47,7 @@ from ..state.screen import EvidenceQuestion, Screen, phrases_in, phrases_of
 from ..state.use import Use
 from ..view import Document
 from ..widgets.controls import Changes, Control, changed, chosen, segments, text, tolerances_input
-from ..widgets.limit_rows import limits_control, present_value
+from ..widgets.limit_rows import limit_controls, present_value
 from ..widgets.words import VERDICT_KINDS
 
 _NO_YES = ("no", "yes")
@@ -97,7 +97,7 @@ class Evidence(LongView):
             chosen(screen, "asked.influence", "Influence of the model on the decision", LEVELS, segments),
             chosen(screen, "asked.consequence", "Consequence of a wrong decision", LEVELS, segments),
             text(screen, "asked.accuracy", "Allowed error of the numbers"),
-            limits_control(_LIMITED, _limits(screen.asked), screen.reading, present, limited),
+            *limit_controls(_LIMITED, _limits(screen.asked), screen.reading, present, limited),
             text(screen, "asked.matrix", "Cases other than the load here, such as force = 2, 3 kN"),
             tolerances_input(screen),
             text(screen, "asked.friction", "Coefficient of friction, if any"),

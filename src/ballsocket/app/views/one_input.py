@@ -22,7 +22,7 @@ from ..widgets.blocks import Block, Content, answer_blocks, sentence
 from ..widgets.controls import Control, chosen, tolerances_input
 from ..widgets.limit_rows import limit_text, present_value
 from ..widgets.words import alert
-from .design_map import axis_control, checked, end_control, limits_input, study_rows
+from .design_map import axis_control, checked, end_control, limit_inputs, study_rows
 from .map_study import limits_of, models_of, swept
 
 _LIMIT = LineStyle(VERMILLION, (2.0, 1.5))
@@ -52,7 +52,7 @@ class OneInput(View):
             chosen(screen, "map_model", "Model", models_of(screen), name="model"),
         ]
         edits = [Control(control.field, checked(screen, control.read, ["across"])) for control in controls]
-        return [*edits, limits_input(screen, swept), tolerances_input(screen)]
+        return [*edits, *limit_inputs(screen, swept), tolerances_input(screen)]
 
     def show(self, screen: Screen) -> None:
         if not self.channel.shown_value("#curve-chart"):
