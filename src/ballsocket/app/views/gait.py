@@ -24,10 +24,10 @@ from ...reports.figure_files import figure_bytes
 from ...reports.hip_plots import course_figure
 from ...reports.pages import picture
 from ...reports.style import BLUE, INK, LineStyle
-from ...reports.svg import attribute, levels_between
+from ...reports.svg import levels_between
 from ..long_view import LongView, LongWork, long_body
 from ..pictures.bore import CELLS_EDGE, BoreField, bare_bore, bore_map, colour_scale, node_field, shape_of, viewer
-from ..pictures.chart import Curve, chart, charts, plain_numbers, spans
+from ..pictures.chart import Curve, chart, charts, spans
 from ..pressing import axis_end
 from ..running import Work
 from ..state.screen import Screen
@@ -277,18 +277,9 @@ def courses_of(result: GaitResult | None, film: GaitFilm | None, reading: Readin
 
 
 def gait_charts(result: GaitResult | None, film: GaitFilm | None, reading: Reading) -> Content:
-    """Return the charts of a cycle, empty ones while it is prepared, and the numbers with which the page plays it."""
+    """Return the charts of a cycle, with which the page plays it; empty ones while it is prepared."""
     courses = courses_of(result, film, reading)
-    drawn = [_chart(list(charted), courses, result, reading) for _, charted in groupby(_COURSES, attrgetter("chart"))]
-    if result is None:
-        return drawn
-    listed = [
-        {"name": course.name, "unit": course.unit(reading).text, "values": plain_numbers(values, 5)}
-        | {"chart": course.chart}
-        for course, values in courses.items()
-    ]
-    data = {"phase": plain_numbers(result.phase, 5), "courses": listed, "rim": result.rim.tolist()}
-    return [f"<div {attribute('player', data)}></div>", *drawn]
+    return [_chart(list(charted), courses, result, reading) for _, charted in groupby(_COURSES, attrgetter("chart"))]
 
 
 def _chart(charted: list[Course], courses: Courses, result: GaitResult | None, reading: Reading) -> Block:
