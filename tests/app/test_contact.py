@@ -21,14 +21,16 @@ from ballsocket.app.session import Page
 from ballsocket.app.views import contact as contact_view
 from ballsocket.app.views import real_cup
 from ballsocket.app.views.cup import _hint, angle_map
-from ballsocket.app.views.real_cup import OrientationMap
 from ballsocket.app.widgets.reading import Reading
 from ballsocket.app.widgets.words import accuracy_sentence
 from ballsocket.core.unit_systems import Units
+from ballsocket.core.validity import Status
 from ballsocket.design_checks import checks_of
+from ballsocket.elasticity.off_axis.orientations import Orientations
 from ballsocket.files.joint_file import JointFile
 from ballsocket.problem.cup import Cup, Side
 from ballsocket.reports.joint_drawing import petals
+from ballsocket.reports.orientation_plots import orientation_figure
 from ballsocket.reports.pages import check_cells, checks_html
 
 from ..extent import either
@@ -310,34 +312,35 @@ def test_a_bore_whose_rings_are_on_disk_is_pressed_at_once(monkeypatch, asked):
 
 
 def test_a_bore_is_prepared_by_one_process_for_all_who_wait(monkeypatch):
-    heard, runs = [], [Mock(news=lambda: RunFinished(True)) for _ in range(5)]
+    heard, runs = [], [Mock(news=lambda: RunFinished(True)) for _ in range(3)]
     begun = Mock(side_effect=runs)
     monkeypatch.setattr(jobs, "Run", begun)
-    first, second = (Job(lambda key, news: heard.append((key, news.value))) for _ in range(2))
-    work, other = (partial(real_cup.set_up, HIP_36, Cup(arc_of_cover=arc)) for arc in (3.0, 2.5))
-    first.ask("press", work)
-    second.ask("cup", work)
+    first, second = (Job(lambda key, news, name=name: heard.append((name, key, news.value))) for name in "ab")
+    (bore, work), (other, other_work) = (
+        (arc, partial(real_cup.set_up, HIP_36, Cup(arc_of_cover=arc))) for arc in (3.0, 2.5)
+    )
+    first.ask(bore, work)
+    second.ask(bore, work)
     assert begun.call_count == 1
     first.stop()
     assert second.works
     assert not runs[0].stop.called
-    first.ask("press", work)
+    first.ask(bore, work)
     first.hear()
-    assert sorted(heard) == [("cup", True), ("press", True)]
+    assert sorted(heard) == [("a", bore, True), ("b", bore, True)]
     assert runs[0].stop.called
-    first.ask("press", work)
-    second.ask("cup", other)
+    first.ask(bore, work)
+    second.ask(other, other_work)
     assert begun.call_count == 3
-    second.ask("of a keyword", partial(other, yields=True))
-    first.ask("of another keyword", partial(other, yields=False))
-    assert begun.call_count == 5
 
 
 def test_a_map_of_orientations_says_how_many_keep_off_the_rim():
     angles = {"inclination": np.radians([20.0, 40.0, 60.0]), "anteversion": np.radians([0.0, 20.0])}
-    apart, held = np.array([[5.0, 4.0], [2.0, 1.0], [-2.0, -3.0]]), np.ones((3, 2), dtype=bool)
-    made = OrientationMap(
-        **angles, edge_distance=apart, max_pressure=10 + apart**2, held=held, figures=dict.fromkeys(Units, b"")
+    apart = np.array([[5.0, 4.0], [2.0, 1.0], [-2.0, -3.0]])
+    fields = {name: np.zeros((3, 2)) for name in ("valid", "tilt", "edge_loaded", "half_angle", "status")}
+    fields |= {"edge_distance": apart, "max_pressure": 10 + apart**2}
+    made = Orientations(
+        **angles, **fields, model=bs.Sphere(), joint=HIP_36, load={"force": 3000.0}, contacts=(), seconds=0.0
     )
     picture = angle_map(made, Cup(inclination=radians(40.0)), "edge_distance")
     assert "67 % of the orientations keep the contact off the rim" in picture
@@ -347,7 +350,7 @@ def test_a_map_of_orientations_says_how_many_keep_off_the_rim():
     assert {float(x) for x in ends} == {58 + 368 * 0.75, 58 + 368 * 0.625}  # at 50° without anteversion, 45° with 20°
     assert 'class="here"' not in angle_map(made, Cup(), "edge_distance")
     assert "edge distance [in]" in angle_map(made, Cup(), "edge_distance", Reading(units=Units.IMPERIAL))
-    lost = replace(made, held=~held)
+    lost = replace(made, status=np.full((3, 2), int(Status.DISLOCATED)))
     assert "in every orientation of the map the contact reaches the rim" in angle_map(lost, Cup(), "max_pressure")
 
 
@@ -360,4 +363,4 @@ def test_the_map_is_that_of_python(monkeypatch):
     found = real_cup.map_orientations(page.screen.file, lambda news: None)
     asked = bs.orient(HIP_36, model=bs.Sphere(cup=Cup(side=Side.RIGHT)), force=3000.0, **angles)
     assert found.edge_distance == pytest.approx(asked.edge_distance, rel=1e-5)  # as far as a press is solved
-    assert all(drawn.startswith(b"\x89PNG") for drawn in found.figures.values())
+    assert orientation_figure(found).axes  # of the report, without the contacts

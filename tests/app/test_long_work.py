@@ -58,7 +58,7 @@ def waited_for(page):
 
 @pytest.fixture(autouse=True)
 def nothing_is_left_running():
-    solving._solved.clear()
+    results.RESULTS._results.clear()
     yield
     assert not running.QUEUE
 
@@ -315,7 +315,7 @@ class Square(LongView):
     """View whose result is the square of the force."""
 
     name, title, run_label = "press", "Square", "Square the force"
-    body = long_body("press", "", "<div id='press-numbers'></div>")
+    body = long_body("press", "<div id='press-numbers'></div>")
 
     def question_of(self, screen):
         return screen.file.load["force"]

@@ -130,7 +130,7 @@ def test_only_what_has_changed_is_shown_and_sent(monkeypatch):
     assert answer["=load"] == page.channel.shown_value("=load")
     assert answer["=load"]["value"] == 2900
     assert numbers(page, "press-numbers")["force"] == 2900.0
-    assert not {"=clearance", "order", "view", "#trouble"} & set(answer)
+    assert not {"=clearance", "@controls", "view", "#trouble"} & set(answer)
     assert set(edits(page, "load", 2900)) == {"n", "question"}
     monkeypatch.setattr(Press, "show", lambda self, screen: shown.append(screen.size))
     page.ask(view="press")
@@ -184,7 +184,7 @@ def test_a_backing_is_built_from_bone_to_shell_of_at_most_twenty_layers():
     edits(page, "behind.0", "away")
     joint = page.screen.file.joint
     assert joint == bs.joints["hip-28"]  # nothing is left to be free, or to be changed
-    assert "behind.0" not in page.channel.shown_value("order")
+    assert "behind.0" not in page.channel.shown_value("@controls")
     layers = "".join(f"&backing.{place}.material=titanium&backing.{place}.thickness=3" for place in range(19))
     page = Page(f"view=judge&{OWN}{layers}")  # where nothing is pressed
     edits(page, "behind.add", "titanium")
@@ -355,26 +355,32 @@ def test_no_range_ends_where_no_joint_is(name):
 
 def test_rows_of_limits_are_edited_and_a_refused_row_stays_as_typed_beside_its_reason():
     page = Page(f"{MAP}&limit=outer_diameter<=52")
-    row = ["outer_diameter", "<=", "52"]
-    assert page.channel.shown_value("=map.limits")["value"] == [row]
-    edits(page, "map.limits", [row, ["half_angle", ">=", "40,5"]])
+    shown = page.channel.shown_value
+    assert shown("=map.limits")["value"] == "outer diameter at most 52 mm"
+    edits(page, "map.limits", True)  # a new row starts at the present design
+    for name, value in (("quantity", "half_angle"), ("sign", ">="), ("value", "40,5")):
+        edits(page, f"map.limits.1.{name}", value)
     assert page.screen.limits[1].low == pytest.approx(radians(40.5))
-    answer = edits(page, "map.limits", [["outer_diameter", "<=", "wide"], ["half_angle", ">=", "40.5"]])
-    field = answer["=map.limits"]
-    assert (field["refused"][0][2], field["wrong"]) == ("wide", 0)
+    field = edits(page, "map.limits.0.value", "wide")["=map.limits.0.value"]
+    assert field["refused"] == "wide"
     assert field["error"].startswith("Outer diameter must be a number in mm")
     assert page.screen.limits[0].high == 52.0
     edits(page, "map.quantity", "area")  # another change keeps what was typed
-    assert page.channel.shown_value("=map.limits")["refused"][0][2] == "wide"
-    edits(page, "map.limits", [["max_pressure", "<=", ""]])  # a new row starts at the present design
+    assert shown("=map.limits.0.value")["refused"] == "wide"
+    edits(page, "map.limits.0.remove", True)
+    assert [limit.name for limit in page.screen.limits] == ["half_angle"]
+    assert "refused" not in shown("=map.limits.0.value")
+    edits(page, "map.limits.0.sign", "<=")
+    edits(page, "map.limits.0.quantity", "max_pressure")
     present = pressure_at(14.0, 5.0)
     (limit,) = page.screen.limits
     assert present <= limit.high == pytest.approx(present, rel=0.01)
     assert limit.high == float(f"{limit.high:.3g}")
     page = Page(f"view=map&{OWN}")
-    answer = edits(page, "map.limits", [["ball_young", "<=", "200000"]])
-    assert "has no ball_young" in answer["=map.limits"]["error"]
-    assert page.screen.limits == ()
+    edits(page, "map.limits", True)
+    edits(page, "map.limits.0.quantity", "ball_young")
+    assert "this design has no value for it" in trouble(page)
+    assert page.screen.limits[0].name == "max_pressure"
 
 
 def test_the_present_numbers_of_a_design():

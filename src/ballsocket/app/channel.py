@@ -70,10 +70,15 @@ class Channel:
         if self._current.get(name, "" if name.startswith("#") else None) != value:
             self._current[name] = self._pending[name] = value
 
+    def put_inputs(self, element: str, fields: Mapping[str, Field]) -> None:
+        """Set inputs and their order in an element, by its id."""
+        self.put_fields(fields)
+        self.put(f"@{element}", list(fields))
+
     def put_fields(self, fields: Mapping[str, Field]) -> None:
         for name, field in fields.items():
             value, refusal = self._refused.get(name, (None, {}))
-            if refusal and value != field["value"]:
+            if refusal and value != _shown_in(field):
                 del self._refused[name]
             self.put(f"={name}", {**field, **refusal} if name in self._refused else field)
 
@@ -84,7 +89,7 @@ class Channel:
         """
         self.accept_field(name)
         field = self._current[f"={name}"]
-        self._refused[name] = field["value"], refusal
+        self._refused[name] = _shown_in(field), refusal
         self.put_fields({name: field})
 
     def accept_field(self, name: str) -> None:
@@ -136,3 +141,8 @@ class Channel:
         self.number = request["n"]
         self._handle_request(request["do"], request)
         self.send()
+
+
+def _shown_in(field: Field) -> Any:
+    """Return the text of a number, or the value of another input."""
+    return field.get("text", field["value"])

@@ -12,7 +12,7 @@ from typing import Any
 from .running import MAX_SECONDS, Run, RunFinished, RunRefused, Work
 
 _POLL_INTERVAL = 0.15  # s between two questions for news
-_SHARED: dict[Hashable, tuple[Run, list[Job]]] = {}  # runs by their work, with the jobs that wait for them
+_SHARED: dict[Hashable, tuple[Run, list[Job]]] = {}  # runs by the key of their work, with the jobs that wait for them
 _MAX_WAITING = 8
 
 
@@ -27,13 +27,12 @@ def call_later(seconds: float, function: Callable[[], None]) -> asyncio.TimerHan
 class Job:
     """Long work of one view in at most one process; its news go to `heard` with the key of the work.
 
-    Jobs that ask for equal work, a partial function with equal arguments, share one process.
+    Jobs that ask for work with equal keys share one process.
     """
 
     def __init__(self, heard: Callable[[Hashable, Any], None], longest: float = MAX_SECONDS) -> None:
         self._heard, self._longest = heard, longest
         self._key: Hashable = None
-        self._work: Hashable = None
         self._run: Run | None = None
         self._context = Context()
         self._timer: asyncio.TimerHandle | None = None
@@ -48,15 +47,9 @@ class Job:
             return
         self.stop()
         self._key, self._context = key, copy_context()
-        keywords = getattr(work, "keywords", {})
-        self._work = getattr(work, "func", work), getattr(work, "args", ()), tuple(sorted(keywords.items()))
-        try:
-            hash(self._work)
-        except TypeError:  # work without comparable arguments is unique
-            self._work = object()
-        if self._work not in _SHARED:
-            _SHARED[self._work] = Run(work, longest=self._longest), []
-        self._run, jobs = _SHARED[self._work]
+        if key not in _SHARED:
+            _SHARED[key] = Run(work, longest=self._longest), []
+        self._run, jobs = _SHARED[key]
         jobs.append(self)
         self._timer = call_later(0.0, self._poll)
 
@@ -71,7 +64,7 @@ class Job:
             return
         run, news = self._run, self._run.news()
         if news is not None:
-            for job in list(_SHARED[self._work][1]):
+            for job in list(_SHARED[self._key][1]):
                 if job._run is run:
                     job._context.run(job._receive, news)
 
@@ -85,12 +78,12 @@ class Job:
         if self._timer is not None:
             self._timer.cancel()
         if self._run is not None:
-            jobs = _SHARED[self._work][1]
+            jobs = _SHARED[self._key][1]
             jobs.remove(self)
             if not jobs:
-                del _SHARED[self._work]
+                del _SHARED[self._key]
                 self._run.stop()
-        self._key = self._work = self._run = self._timer = None
+        self._key = self._run = self._timer = None
 
 
 _DRAWING_THREAD = ThreadPoolExecutor(max_workers=1, thread_name_prefix="drawing")

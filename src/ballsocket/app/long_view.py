@@ -22,10 +22,10 @@ if TYPE_CHECKING:
 _EARLIER = "<p class='earlier'>These results belong to earlier inputs.</p>"
 
 
-def long_body(view: str, inputs: str, shown: str) -> str:
+def long_body(view: str, shown: str, more_inputs: str = "") -> str:
     """Return the HTML of a view with its inputs, the button of its work, and the HTML of its results."""
     return (
-        f'<div class="inputs-row">{inputs}</div><div data-field="{view}.run"></div>'
+        f'<div class="inputs-row" id="{view}-inputs">{more_inputs}</div><div data-field="{view}.run"></div>'
         f'<div id="{view}-trouble" role="alert"></div><div id="{view}-earlier" role="status"></div>'
         f'<div class="results">{shown}</div>'
     )
@@ -148,25 +148,9 @@ class LongView(View):
     result_kind = ""
 
     def begin(self) -> None:
-        self.works: list[LongWork] = []
-        work = LongWork(
-            self.page,
-            self.name,
-            self.run_label,
-            self.question_of,
-            self.work,
-            self.show_result,
-            automatic=self.automatic,
-            longest=self.longest,
-            kind=self.result_kind,
-        )
-        self.long = self.add(work)
-
-    def add(self, work: LongWork) -> LongWork:
-        """Let the view have some long work with its button."""
-        self.works.append(work)
-        self.actions[f"{work.name}.run"] = work.click
-        return work
+        hooks = self.question_of, self.work, self.show_result
+        kind = self.automatic, self.longest, self.result_kind
+        self.long = self.add(LongWork(self.page, self.name, self.run_label, *hooks, *kind))
 
     @abstractmethod
     def question_of(self, screen: Screen) -> Hashable:
@@ -183,21 +167,9 @@ class LongView(View):
     def show(self, screen: Screen) -> None:
         self.long.show(screen)
 
-    @property
-    def mark(self) -> str:
-        return "runs" if any(work.runs for work in self.works) else "done" * any(work.unseen for work in self.works)
-
-    def clear_mark(self) -> None:
-        for work in self.works:
-            work.unseen = False
-
     def result(self, screen: Screen) -> Any:
         """Return the result for a file; raise ValueError without one."""
         result = self.long.result(screen)
         if result is None:
             raise ValueError(f"there is no result for this design yet: press {self.run_label!r} first")
         return result
-
-    def leave(self) -> None:
-        for work in self.works:
-            work.leave()

@@ -21,7 +21,7 @@ from .state.designs import read_upload, session_text
 from .state.screen import ANGLES, MAX_LINK_LENGTH, SIZES, START, Screen, check_compared, read_query
 from .view import ScreenContent, View, make_file, print_page
 from .views.registry import view_class
-from .widgets.controls import Changes, Reader, by_name, chosen, fields_of, refusal_of, segments
+from .widgets.controls import Changes, Control, Reader, by_name, chosen, fields_of, refusal_of, segments
 from .widgets.joint_controls import joint_controls, joint_words, layer_controls
 from .widgets.words import alert
 
@@ -147,31 +147,23 @@ class Page:
 
     def _edit(self, words: Mapping[str, Any]) -> None:
         """Change an input; a number that was typed before a choice of units has the units before it."""
-        name, present = str(words.get("name")), {name: getattr(self.screen, name) for name in _UNIT_CHOICES}
-        units = words.get("units") or present
-        if units == present or name in _UNIT_CHOICES:
-            self._edit_as_shown(name, words.get("value"))
-            return
-        if not isinstance(units, dict) or set(units) != set(present):
-            raise ValueError(f"units = {shown(units)} must have {', '.join(_UNIT_CHOICES)}")
-        self._change(replace(self.screen, **units))
-        try:
-            self._edit_as_shown(name, words.get("value"))
-        finally:
-            self._change(replace(self.screen, **present))
-
-    def _edit_as_shown(self, name: str, value: Any) -> None:
-        """Change an input whose number is in the units of the screen."""
+        name, value = str(words.get("name")), words.get("value")
         if value is not None:  # None forgets a refused text
-            changes = self._reader(name)(value)
+            changes = self._reader(name, words.get("units") or {})(value)
             self.refuse("")
             self.ask(**(changes or {}))
         self.channel.accept_field(name)
 
-    def _reader(self, name: str) -> Reader:
-        """Return the reader of an input or of another event."""
+    def _reader(self, name: str, units: Any) -> Reader:
+        """Return the reader of an input in these units of the page, or of another event."""
+        screen = self.screen
+        if not isinstance(units, dict) or set(units) not in (set(), set(_UNIT_CHOICES)):
+            raise ValueError(f"units = {shown(units)} must have {', '.join(_UNIT_CHOICES)}")
+        if name not in _UNIT_CHOICES and any(getattr(screen, choice) != value for choice, value in units.items()):
+            screen = replace(screen, **units)
         view = self._views.get(name.partition(".")[0])
-        controls = self.controls if view is None else view.named_controls(self.screen)
+        beside = self.controls if screen is self.screen else page_controls(screen)
+        controls = beside if view is None else view.named_controls(screen)
         readers: dict[str, Reader] = {**self._actions, **{name: control.take for name, control in controls.items()}}
         check_names([name], readers, "among the inputs")
         return readers[name]
@@ -186,8 +178,8 @@ class Page:
             self.refuse(f"This cannot be saved: {error}")
         else:
             if name.endswith(".pdf"):
-                paper = self.screen.reading.units.paper
-                self._printing.ask(name, partial(print_page, content.decode("utf-8"), paper))
+                page, paper = content.decode("utf-8"), self.screen.reading.units.paper
+                self._printing.ask((name, page, paper), partial(print_page, page, paper))
                 return
             self.send_file(name, content)
         self.channel.send()
@@ -196,7 +188,7 @@ class Page:
         if isinstance(news, RunRefused):
             self.refuse(news.why)
         elif isinstance(news, RunFinished):
-            self.send_file(key, news.value)
+            self.send_file(key[0], news.value)
         self.channel.send()
 
     def _upload(self, words: Mapping[str, Any]) -> None:
@@ -242,17 +234,8 @@ class Page:
 
     def _put_inputs(self) -> None:
         screen = self.screen
-        self.controls = by_name(
-            [
-                *joint_controls(screen),
-                *layer_controls(screen),
-                chosen(screen, "units", "Units", _UNITS, segments),
-                chosen(screen, "size", "Ball size as", SIZES, segments),
-                chosen(screen, "angle", "Angles in", ANGLES, segments),
-            ]
-        )
-        self.channel.put_fields(fields_of(self.controls))
-        self.channel.put("order", list(self.controls))
+        self.controls = page_controls(screen)
+        self.channel.put_inputs("controls", fields_of(self.controls))
         self.channel.put("#behind", joint_words(screen.file.joint))
         self.channel.put("view", screen.view)
         self.channel.put("link", "" if screen is self._substitute else screen.link)
@@ -284,6 +267,19 @@ class Page:
             timer.cancel()
         for view in self._views.values():
             view.leave()
+
+
+def page_controls(screen: Screen) -> dict[str, Control]:
+    """Return the inputs beside all views by name: of the joint and its load, and of the units."""
+    return by_name(
+        [
+            *joint_controls(screen),
+            *layer_controls(screen),
+            chosen(screen, "units", "Units", _UNITS, segments),
+            chosen(screen, "size", "Ball size as", SIZES, segments),
+            chosen(screen, "angle", "Angles in", ANGLES, segments),
+        ]
+    )
 
 
 def _links(value: Any) -> list[str]:

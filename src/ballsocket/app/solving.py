@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections import OrderedDict
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 from typing import Any
 
@@ -15,26 +13,12 @@ from ..files.joint_file import JointFile
 from ..model_catalogue import catalogue
 from ..problem import Joint
 from ..problem.cup import Cup
+from . import results
 from .jobs import Job
-from .running import Report, RunRefused
+from .running import Report, RunFinished, RunRefused
 
-PRESS_SECONDS = 20.0  # processor time in s of the presses of one joint
-_MAX_SOLVED = 256
-
-Key = tuple[Joint, Cup, tuple[tuple[str, Any], ...], str]
-_solved: OrderedDict[Key, SolvedPress] = OrderedDict()  # results of slow presses: a contact precedes its curve
-
-
-@dataclass(frozen=True, eq=False)
-class SolvedPress:
-    """Contact or the reason for its absence, its curve, and True once nothing more will come.
-
-    The report of a curve has no `result`, which precedes it.
-    """
-
-    result: Contact | str | None
-    curve: Contact | None = None
-    complete: bool = False
+PRESS_SECONDS = 20.0  # processor time in s of one press, and of one curve
+Named = tuple[tuple[str, Any], ...]  # values by name
 
 
 def heavy(joint: Joint, name: str) -> bool:
@@ -43,47 +27,26 @@ def heavy(joint: Joint, name: str) -> bool:
 
 
 def solved(file: JointFile, name: str) -> Contact | str | None:
-    """Return the result of a slow press so far; None before its request."""
-    press = _solved.get(_key(file, name))
-    return None if press is None else press.result
+    """Return the contact of a slow press or the reason for its absence; None before it is solved."""
+    result: Contact | str | None = results.RESULTS.get(_press_call(file, name))
+    return result
 
 
 def solved_curve(contact: Contact) -> Contact | None:
-    """Return the curve of the contact of a slow press; None before it is solved."""
-    return next((press.curve for press in _solved.values() if press.result is contact), None)
+    """Return the curve of the contact of a slow press; None before it is solved, or without one."""
+    curve = results.RESULTS.get(_curve_call(contact))
+    return curve if isinstance(curve, Contact) else None
 
 
-def _unfinished(file: JointFile, names: Iterable[str]) -> tuple[str, ...]:
-    presses = {name: _solved.get(_key(file, name)) for name in names if heavy(file.joint, name)}
-    return tuple(name for name, press in presses.items() if press is None or not press.complete)
+def _press_call(file: JointFile, name: str) -> tuple[Any, ...]:
+    """Return the function of a slow press and its arguments, which are also the key of its result."""
+    return _press, name, file.joint, file.cup, tuple(file.load.items()), tuple(file.aim.items())
 
 
-def _key(file: JointFile, name: str) -> Key:
-    return file.joint, file.cup, (*file.load.items(), *file.aim.items()), name
-
-
-def _store(file: JointFile, name: str, press: SolvedPress) -> None:
-    _solved[_key(file, name)] = press
-    while len(_solved) > _MAX_SOLVED:
-        _solved.popitem(last=False)
-
-
-def solve(file: JointFile, names: Sequence[str], report: Report) -> None:
-    """Press a joint by slow models in a separate process; report each contact, and its curve later."""
-    contacts = {}
-    for name in names:
-        result = _press(file, name)
-        if isinstance(result, Contact) and float(result.half_angle) > 0:
-            contacts[name] = result
-        report((name, SolvedPress(result, complete=name not in contacts)))
-    for name, contact in contacts.items():
-        report((name, SolvedPress(None, press_short_curve(contact, catalogue[name]), complete=True)))
-
-
-def _press(file: JointFile, name: str) -> Contact | str:
+def _press(name: str, joint: Joint, cup: Cup, load: Named, aim: Named, report: Report) -> Contact | str:
     """Press one model; the contact carries the slow numbers that a page shows."""
     try:
-        contact = catalogue[name].in_cup(file.cup, **file.aim).press(file.joint, **file.load)
+        contact = catalogue[name].in_cup(cup, **dict(aim)).press(joint, **dict(load))
     except OutsideDomainError as error:
         return str(error)
     if not contact.status.failed:
@@ -91,34 +54,50 @@ def _press(file: JointFile, name: str) -> Contact | str:
     return contact
 
 
+def _curve_call(contact: Contact) -> tuple[Any, ...]:
+    return _press_curve, contact.model.name, contact
+
+
+def _press_curve(name: str, contact: Contact, report: Report) -> Contact:
+    return press_short_curve(contact, catalogue[name])
+
+
+def _missing(files: Iterable[JointFile], names: Iterable[str]) -> Iterator[tuple[Any, ...]]:
+    """Yield the calls without a result: of all presses, then of the curves of those that have a contact."""
+    calls = [_press_call(file, name) for file in files for name in names if heavy(file.joint, name)]
+    contacts = [results.RESULTS.get(call) for call in calls]
+    yield from (call for call, contact in zip(calls, contacts, strict=True) if contact is None)
+    for contact in contacts:
+        if isinstance(contact, Contact) and float(contact.half_angle) > 0:
+            call = _curve_call(contact)
+            if results.RESULTS.get(call) is None:
+                yield call
+
+
 class SlowPresses:
-    """Slow presses of one page, in at most one process for the present screen; `changed` is called on news."""
+    """Slow presses of one page, one at a time in a process; `changed` is called after each."""
 
     def __init__(self, changed: Callable[[], None]) -> None:
         self._changed = changed
-        self._files: tuple[JointFile, tuple[str, ...]] | None = None
-        self.job = Job(self._store_news, PRESS_SECONDS)
+        self.job = Job(self._store_result, PRESS_SECONDS)
 
     def ask(self, files: Iterable[JointFile], names: tuple[str, ...]) -> None:
-        """Start the presses of the first file that has unsolved models."""
-        unsolved = next(((file, missing) for file in files if (missing := _unfinished(file, names))), None)
-        if unsolved is None:
+        """Start the first press or curve of these files that has no result; stop one that is no longer needed."""
+        call = next(_missing(files, names), None)
+        if call is None:
             self.leave()
-        elif not self.job.works or unsolved != self._files:
-            self.leave()
-            self._files = unsolved
-            self.job.ask(unsolved, partial(solve, *unsolved))
+        else:
+            function, *arguments = call
+            self.job.ask(call, partial(function, *arguments))
 
-    def _store_news(self, key: Any, news: Any) -> None:
-        file, names = self._files or key
-        if isinstance(news, tuple):
-            name, press = news
-            _store(file, name, replace(press, result=press.result or solved(file, name)))
-            self._files = file, _unfinished(file, names)
+    def _store_result(self, call: Any, news: Any) -> None:
+        if isinstance(news, RunFinished):
+            results.RESULTS.put(call, news.value)
         elif isinstance(news, RunRefused):
-            for name in names:
-                result = solved(file, name) or f"{name} has no result here: {news.why}"
-                _store(file, name, SolvedPress(result, complete=True))
+            _, name, *_ = call
+            results.RESULTS.put(call, f"{name} has no result here: {news.why}")
+        else:
+            return
         self._changed()
 
     def leave(self) -> None:

@@ -29,6 +29,7 @@ from .widgets.controls import Control, Reader, by_name, fields_of
 from .widgets.words import alert
 
 if TYPE_CHECKING:
+    from .long_view import LongWork
     from .session import Page
 
 STRESS_PAUSE = 0.4  # seconds without a change until the stress of the model itself is computed for the checks
@@ -50,11 +51,6 @@ class Document:
     contact: Contact | None = None
 
 
-def field_places(view: str, keys: Iterable[str]) -> str:
-    """Return the HTML of the places of a view's inputs, by their names without the view."""
-    return "".join(f'<div data-field="{view}.{key}"></div>' for key in keys)
-
-
 class View(ABC):
     """View of the screen, made with its page when it is first opened.
 
@@ -69,6 +65,7 @@ class View(ABC):
     def __init__(self, page: Page) -> None:
         self.page, self.channel = page, page.channel
         self.actions: dict[str, Reader] = {}
+        self.works: list[LongWork] = []
         self._cancel: Callable[[], None] = lambda: None
         self.begin()
 
@@ -80,7 +77,10 @@ class View(ABC):
         """Show the results for a screen."""
 
     def controls(self, screen: Screen) -> Iterable[Control]:
-        """Return the inputs of the view, named without the view."""
+        """Return the inputs of the view, named without the view, in their order in its element "<view>-inputs".
+
+        Those with an element `data-field` of their name are there.
+        """
         return ()
 
     def named_controls(self, screen: Screen) -> dict[str, Control]:
@@ -89,7 +89,7 @@ class View(ABC):
 
     def show_inputs(self, screen: Screen) -> None:
         """Show the inputs of the view."""
-        self.channel.put_fields(fields_of(self.named_controls(screen)))
+        self.channel.put_inputs(f"{self.name}-inputs", fields_of(self.named_controls(screen)))
 
     def put(self, **parts: Content) -> None:
         """Fill elements of the view with blocks or HTML, by their ids without the view."""
@@ -136,16 +136,26 @@ class View(ABC):
         """List the joints and models to press, in the order in which they are needed."""
         return [], ()
 
+    def add(self, work: LongWork) -> LongWork:
+        """Let the view have some long work with its button."""
+        self.works.append(work)
+        self.actions[f"{work.name}.run"] = work.click
+        return work
+
     @property
     def mark(self) -> str:
         """State of the work of the view for its button: "runs", "done" since it was last shown, or empty."""
-        return ""
+        return "runs" if any(work.runs for work in self.works) else "done" * any(work.unseen for work in self.works)
 
-    def clear_mark(self) -> None:  # noqa: B027  most views have no work of their own
+    def clear_mark(self) -> None:
         """Forget the mark "done", since the view is open."""
+        for work in self.works:
+            work.unseen = False
 
-    def leave(self) -> None:  # noqa: B027  most views have no work of their own
+    def leave(self) -> None:
         """Stop all work of a closed page."""
+        for work in self.works:
+            work.leave()
 
 
 @dataclass(frozen=True, kw_only=True)

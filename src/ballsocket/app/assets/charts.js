@@ -156,6 +156,9 @@ export function placeIn(svg, x, y) {
   return { x: across(x), y: up(y), top: TOP, foot: up(drawn.get(svg).y[0]) };
 }
 
+/** @param {Element} svg */
+export const chartOf = (svg) => drawn.get(svg).chart;
+
 /** @param {Drawn} chart  @param {DOMPoint} place */
 function nearest({ chart: { curves }, across, up }, place) {
   let best = null;

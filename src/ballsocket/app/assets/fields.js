@@ -2,7 +2,6 @@
 // Inputs made of plain data: each asks for its change, and shows what the server says of it.
 import { ask, listen, pendingValue } from "./connection.js";
 import { confirmTyped, element, swatch } from "./elements.js";
-import { limits } from "./limits.js";
 
 /**
  * @typedef {Record<string, any>} Field
@@ -191,7 +190,35 @@ function run(name) {
   return { node: element("div", { class: "field run" }, button, bar, text), show };
 }
 
-const makers = { number, choice, segments, several, tick, words, run, limits: (name) => limits(name, edit) };
+function button(name) {
+  const node = element("button", { type: "button", class: "plain" });
+  node.addEventListener("click", () => edit(name, true));
+  function show(field) {
+    node.textContent = field.label;
+    node.setAttribute("aria-label", field.hint);
+  }
+  return { node: element("div", { class: "field" }, node), show };
+}
+// inputs in rows: the number of a row that is added here has the focus, and the button below when a row has gone
+function rows(name) {
+  const title = element("span", { class: "label", id: `label-${name}` }), list = element("div", { class: "rows" });
+  const add = element("button", { type: "button", class: "plain" });
+  const node = element("div", { class: "field", role: "group", "aria-labelledby": title.id }, title, list, add);
+  let isAdding = false;
+  add.addEventListener("click", () => { isAdding = true; edit(name, true); });
+  function show(field) {
+    [title.textContent, add.textContent] = [field.label, field.add];
+    const hadFocus = list.contains(document.activeElement), before = list.children.length;
+    arrange(list, field.names.map((inside) => `${name}.${inside}`));
+    if (hadFocus && !list.contains(document.activeElement)) add.focus();
+    if (!isAdding || list.children.length === before) return;
+    isAdding = false;
+    [...list.querySelectorAll(".box input")].at(-1).select();
+  }
+  return { node, show };
+}
+
+const makers = { number, choice, segments, several, tick, words, run, button, rows };
 
 /** Show an input as the server says, unless an edit of it is still on the page. */
 export function showField(name, field) {
@@ -220,12 +247,14 @@ document.addEventListener("shown", () => {
   const units = Object.fromEntries(UNITS.map((name) => [name, known(name).value]));
   for (const [name, input] of inputs) if (!stale.has(name)) input.units = units;
 });
-export function arrange(names) {
-  const home = document.getElementById("controls");
-  const nodes = names.map((name) => inputs.get(name).node);
+/** Put inputs without a place of their own into an element, in an order. @param {Element | null} home */
+export function arrange(home, names) {
+  if (!home) return;
+  const isFree = (node) => node.parentElement === home || !node.closest("[data-field], .rows");
+  const nodes = names.map((name) => inputs.get(name).node).filter(isFree);
   // those that stay are not moved: one of them may have the focus
   for (const child of /** @type {HTMLElement[]} */ ([...home.children])) {
-    if (nodes.includes(child)) continue;
+    if (nodes.includes(child) || !child.dataset.name) continue;
     for (const box of child.querySelectorAll("input")) delete box.dataset.typing;
     child.remove();
   }

@@ -2,7 +2,6 @@
 // Contour maps: the number under the pointer, a point picked by click or keyboard, and limits dragged by their squares.
 import { ask, pendingValue } from "./connection.js";
 import { STEPS, digits, hit, lines, pointIn } from "./elements.js";
-import { known } from "./fields.js";
 
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 /** @type {Map<string, number[]>} */
@@ -46,11 +45,11 @@ function showCursor(map, share) {
   cursor.append(...lines(words, across > 0.6 ? -10 : 10, up > 0.85 ? 20 : -24, across > 0.6));
 }
 function moveLimit(handle, event) {
-  const pending = pendingValue("map.limits"), rows = (pending ?? known("map.limits").value).map((row) => [...row]);
-  const row = rows[Number(handle.dataset.limit)], present = pending ? row[2] : handle.getAttribute("aria-valuenow");
-  row[2] = digits(Number(present) + STEPS[event.key] * Number(handle.dataset.step));
-  handle.setAttribute("aria-valuenow", row[2]);
-  ask("edit", "map.limits", rows);
+  const name = `map.limits.${handle.dataset.limit}.value`;
+  const present = Number(pendingValue(name) ?? handle.getAttribute("aria-valuenow"));
+  const text = digits(present + STEPS[event.key] * Number(handle.dataset.step));
+  handle.setAttribute("aria-valuenow", text);
+  ask("edit", name, text);
 }
 
 document.addEventListener("shown", () => {

@@ -24,7 +24,7 @@ listen((message, request) => {
     if (name.startsWith("#")) fill(name, value);
     else if (name.startsWith("=")) showField(name.slice(1), value);
   }
-  if (message.order) arrange(message.order);
+  for (const [name, value] of Object.entries(message)) if (name.startsWith("@")) arrange(at(name.slice(1)), value);
   if (message.view) showView(message.view);
   if ("works" in message) markViews(message.works ?? {});
   if ("link" in message) page.toggleAttribute("data-unread", !message.link); // the address stays as it is

@@ -13,7 +13,7 @@ const TEXTS = { // words of an input by its kind; others are in no list
   segments: (field) => new Map(field.options).get(field.value) ?? "",
   words: (field) => field.value,
   several: (field) => field.value.join(", "),
-  limits: (field) => field.value.map((row) => row.join(" ")).join(", "),
+  rows: (field) => field.value,
   tick: (field) => (field.value ? "yes" : "no"),
 };
 /** @typedef {{edited: string, inputs: Record<string, [string, string]>, pressure: string, sign: string}} Step */
@@ -59,7 +59,7 @@ function render() {
 listen((message, request) => {
   if (message.fresh) inputs = {};
   for (const [name, field] of Object.entries(message))
-    if (name.startsWith("=") && TEXTS[field.kind]) inputs[name.slice(1)] = [field.label, TEXTS[field.kind](field)];
+    if (/^=(?!.*\.\d+\.)/.test(name) && TEXTS[field.kind]) inputs[name.slice(1)] = [field.label, TEXTS[field.kind](field)];
   const [pressure, verdict] = ["dd[data-name=max_pressure]", ".verdict"].map((part) =>
     document.querySelector(`section:not([hidden]) #press-numbers ${part}`)?.textContent ?? "");
   const edited = request?.words.name || steps[step()]?.edited || "";

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import tempfile
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
@@ -144,18 +144,7 @@ CHOICES: Mapping[str, tuple[str, ...]] = {
 
 DEFAULT_USE = Use()  # settings of a page without a link
 
-_NUMBERS: Mapping[str, Callable[[Any], Any]] = {
-    "body_weight": lambda text: parse("body_weight", text, Kind.FORCE),
-    "instant": lambda text: _instant(parse("instant", text, Kind.NUMBER)),
-    "coefficient": lambda text: parse("coefficient", text, Kind.NUMBER),
-    "spread": lambda text: parse("spread", text, Kind.NUMBER),
-    "millions": lambda text: parse("millions", text, Kind.NUMBER),
-}
-
-
-def _instant(number: float) -> int:
-    require("instant", number, number.is_integer(), "a whole number, counted from 0")
-    return int(number)
+_NUMBERS = {"body_weight": Kind.FORCE} | dict.fromkeys(("instant", "coefficient", "spread", "millions"), Kind.NUMBER)
 
 
 def use_pairs(use: Use) -> list[tuple[str, str]]:
@@ -172,7 +161,12 @@ def use_of(pairs: Mapping[str, str]) -> Use:
     """Read settings from pairs of a link, without their prefix."""
     check_names(pairs, [*_PLAIN_FIELDS, *LAW_INPUTS], "of a hip in use in the link")
     plain = {name: text for name, text in pairs.items() if name in _PLAIN_FIELDS}
-    words: dict[str, Any] = {name: _NUMBERS[name](text) if name in _NUMBERS else text for name, text in plain.items()}
+    words: dict[str, Any] = {
+        name: parse(name, text, _NUMBERS[name]) if name in _NUMBERS else text for name, text in plain.items()
+    }
+    if "instant" in words:
+        require("instant", words["instant"], words["instant"].is_integer(), "a whole number, counted from 0")
+        words["instant"] = int(words["instant"])
     numbers = {name: parse(name, text, Kind.NUMBER) for name, text in pairs.items() if name in LAW_INPUTS}
     return Use(**words, law_numbers=tuple(sorted(numbers.items())))
 

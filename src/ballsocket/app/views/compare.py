@@ -19,7 +19,7 @@ from ...reports.press_plots import press_figure
 from ...reports.style import LineStyle, numbered
 from ..pressing import AXIAL_CURVES, fine_curves, press_charts
 from ..state.screen import MAX_COMPARED, Screen
-from ..view import STRESS_PAUSE, Document, View, field_places
+from ..view import STRESS_PAUSE, Document, View
 from ..widgets.blocks import Block, sentence, table
 from ..widgets.controls import Changes, Control, choice, chosen
 from ..widgets.design_table import Designs, design_rows, design_table, press_designs, with_drawings, with_stresses
@@ -39,8 +39,8 @@ class Compare(View):
     """View that compares the design on the screen with others."""
 
     name, title = "compare", "Compare"
-    body = f"""
-<div class="inputs-row">{field_places("compare", ("preset", "base"))}</div>
+    body = """
+<div class="inputs-row" id="compare-inputs"></div>
 <p><button type="button" class="plain" data-tell="compare.keep">Add this design to the comparison</button></p>
 <div id="compare-trouble" role="alert"></div><div id="compare-note"></div>
 <div id="compare-table"></div>

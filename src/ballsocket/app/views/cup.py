@@ -16,15 +16,18 @@ from ...contact.verdict import EDGE_DISTANCE
 from ...core.quantities import CONTACT, CUP, DERIVED, QUANTITIES
 from ...design_checks import checks_of
 from ...elasticity.off_axis.contact import OffAxisContact
+from ...elasticity.off_axis.orientations import Orientations
 from ...problem.cup import Cup
 from ...reports import svg
+from ...reports.figure_files import figure_bytes
+from ...reports.orientation_plots import orientation_figure
 from ...reports.pages import picture
 from ...reports.press_report import rim_sentence
 from ..long_view import LongWork, long_body
 from ..pictures.bore import METRIC, bare_bore, pressed_bore, pressed_viewer
 from ..pictures.contour_map import MapPlane, contour_map, outlined, read_point
 from ..state.screen import STANDINGS, Screen
-from ..view import Document, field_places
+from ..view import Document
 from ..widgets.blocks import Block, Content, numbers, sentence
 from ..widgets.controls import Changes, Control, by_name, capital, chosen, segments
 from ..widgets.joint_controls import cup_controls
@@ -32,7 +35,6 @@ from ..widgets.reading import Reading
 from ..widgets.words import VERDICT_KINDS, checked, column_of, quantity_cell, trust
 from .real_cup import (
     LEWINNEK,
-    OrientationMap,
     RealCupView,
     cup_document,
     is_prepared,
@@ -41,7 +43,6 @@ from .real_cup import (
     pressed_in_cup,
 )
 
-_FIELDS = ("inclination", "anteversion", "tilt", "inwards", "forwards", "arc_of_cover", "chamfer", "aim", "side")
 _TYPICAL = {"inclination": 45.0, "anteversion": 15.0}
 _SHOWN = """<div id="cup-numbers"></div><div class="beside">
 <figure><figcaption>Pressure on the cup, seen from its opening</figcaption><div id="cup-map"></div></figure>
@@ -55,10 +56,10 @@ class CupView(RealCupView):
     """View of the load in the present cup, followed by a map over orientations."""
 
     name, title, run_label = "cup", "Cup", "Prepare the cup"
-    body = f"""{long_body("cup", field_places("cup", _FIELDS), _SHOWN)}
+    body = f"""{long_body("cup", _SHOWN)}
 <figure>
   <figcaption>Cup orientation map</figcaption>
-  <div data-field="cup.show"></div>{long_body("cup-stood", "", '<div id="cup-stood"></div>')}
+  <div data-field="cup.show"></div>{long_body("cup-stood", '<div id="cup-stood"></div>')}
 </figure>
 """
 
@@ -81,7 +82,8 @@ class CupView(RealCupView):
 
     def controls(self, screen: Screen) -> list[Control]:
         titles = [(name, QUANTITIES[name].title) for name in STANDINGS]
-        return [*cup_controls(screen), chosen(screen, "standing", "Map of", titles, segments, "show")]
+        *own, _ = cup_controls(screen)  # the interface is an input of the finite elements
+        return [*own, chosen(screen, "standing", "Map of", titles, segments, "show")]
 
     def show(self, screen: Screen) -> None:
         is_prepared(screen.file)
@@ -108,18 +110,21 @@ class CupView(RealCupView):
             screen = replace(screen, **by_name(cup_controls(screen))[name].read(f"{angle} deg"))
         return {"file": screen.file}
 
-    def _show_map(self, screen: Screen, orientations: OrientationMap | None) -> None:
+    def _show_map(self, screen: Screen, orientations: Orientations | None) -> None:
         if orientations is None:
             self.put(stood="")
         else:
             self.put(stood=angle_map(orientations, screen.file.cup, screen.standing, screen.reading) + _KEY)
 
     def document(self, screen: Screen) -> Document:
-        orientations: OrientationMap | None = self.orientations.result(screen)
-        maps = {}
-        if orientations is not None:
-            figure = picture(orientations.figures[screen.reading.units], "map")
-            maps = {"orientations": ("Cup orientation map", figure)}
+        orientations: Orientations | None = self.orientations.result(screen)
+
+        def maps() -> dict[str, tuple[str, str]]:
+            if orientations is None:
+                return {}
+            figure = figure_bytes(orientation_figure(orientations, screen.reading.units))
+            return {"orientations": ("Cup orientation map", picture(figure, "map"))}
+
         heads = ["quantity", "value"]
         return cup_document(screen, lambda contact: [heads, *_file_rows(contact, screen.reading)], maps)
 
@@ -191,7 +196,7 @@ def _hint(contact: OffAxisContact) -> str:
     return f"<p><button type='button' class='plain' data-tell='cup.usual'>{words}</button></p>"
 
 
-def angle_map(orientations: OrientationMap, cup: Cup, quantity: str, reading: Reading = METRIC) -> str:
+def angle_map(orientations: Orientations, cup: Cup, quantity: str, reading: Reading = METRIC) -> str:
     """Draw a field over inclination and anteversion, with the present cup and Lewinnek's zone.
 
     Complete fields are interpolated by cubic splines, for smooth contours.
@@ -222,16 +227,14 @@ def angle_map(orientations: OrientationMap, cup: Cup, quantity: str, reading: Re
     return contour_map(plane, values, svg.levels_between(low, high, 7), labels, marks, "cup.pick")
 
 
-def _map_description(orientations: OrientationMap, label: str, reading: Reading) -> str:
+def _map_description(orientations: Orientations, label: str, reading: Reading) -> str:
     free = orientations.held & (orientations.edge_distance > 0)
     if not free.any():
         return f"{label}: in every orientation of the map the contact reaches the rim"
-    best = numpy.where(free, orientations.edge_distance, -numpy.inf)
-    row, column = numpy.unravel_index(int(best.argmax()), best.shape)
-    inclination, anteversion = degrees(orientations.inclination[row]), degrees(orientations.anteversion[column])
+    inclination, anteversion, index = orientations.best(orientations.edge_distance)
     share = f"{100 * free.mean():.0f} % of the orientations keep the contact off the rim"
-    apart = reading.with_unit(QUANTITIES["edge_distance"], float(best.max()))
+    apart = reading.with_unit(QUANTITIES["edge_distance"], float(orientations.edge_distance.flat[index]))
     return (
         f"{label} over inclination and anteversion: {share}; furthest, {apart}, at "
-        f"inclination {inclination:.3g}°, anteversion {anteversion:.3g}°"
+        f"inclination {degrees(inclination):.3g}°, anteversion {degrees(anteversion):.3g}°"
     )

@@ -19,11 +19,11 @@ from ...studies.study_answer import map_table
 from ...studies.task import BOUNDS, EDGE_DISTANCE
 from ..pictures.contour_map import MapPlane, contour_map, outlined, read_point
 from ..state.screen import AXES, MAPPED, PICKED, MapAxis, Screen
-from ..view import Document, View, field_places
+from ..view import Document, View
 from ..widgets.blocks import Content, answer_blocks
 from ..widgets.controls import Changes, Control, choice, chosen, empty_number, parameter, segments
 from ..widgets.design_table import design_table, press_designs, with_drawings, with_stresses
-from ..widgets.limit_rows import limit_text, limits_control, present_value
+from ..widgets.limit_rows import limit_controls, limit_text, present_value
 from ..widgets.reading import Reading, box_text
 from ..widgets.words import alert, column_of
 from .compare import with_compared
@@ -43,7 +43,6 @@ from .map_study import (
 )
 
 _LIMITED = tuple(dict.fromkeys((*MAPPED, EDGE_DISTANCE, *JOINT, *AXES)))  # quantities that the rows of limits offer
-_FIELDS = ("across", "across_low", "across_high", "quantity", "up", "up_low", "up_high", "model")
 _AXIS_LETTERS, _END_WORDS = {"across": "x", "up": "y"}, {"low": "from", "high": "to"}
 _PRESENT, _PICKED = "this design", "selected point"
 _HINT = (
@@ -97,8 +96,8 @@ class DesignMap(View):
     """View of one quantity over two parameters, computed as one study by a quick model."""
 
     name, title = "map", "Design map"
-    body = f"""
-<div class="inputs-row map-inputs">{field_places("map", _FIELDS)}</div>
+    body = """
+<div class="inputs-row" id="map-inputs"></div>
 <div data-field="map.limits"></div>
 <div id="map-trouble" role="alert"></div>
 <div class="map-layout">
@@ -123,16 +122,20 @@ class DesignMap(View):
 
     def controls(self, screen: Screen) -> list[Control]:
         quantities = [(name, QUANTITIES[name].title) for name in MAPPED]
+        across, up = (
+            [axis_control(screen, which), *(end_control(screen, which, end) for end in _END_WORDS)]
+            for which in _AXIS_LETTERS
+        )
         controls = [
-            *(axis_control(screen, which) for which in _AXIS_LETTERS),
-            *(end_control(screen, which, end) for which in _AXIS_LETTERS for end in _END_WORDS),
+            *across,
             chosen(screen, "quantity", "Map of", quantities),
+            *up,
             chosen(screen, "map_model", "Model", models_of(screen), name="model"),
             chosen(screen, "sizes", "Sizes at a selected point", PICKED, segments),
         ]
         return [
             *(Control(control.field, checked(screen, control.read, _AXIS_LETTERS)) for control in controls),
-            limits_input(screen, mapped),
+            *limit_inputs(screen, mapped),
         ]
 
     def show(self, screen: Screen) -> None:
@@ -195,7 +198,7 @@ def checked(screen: Screen, read: Callable[[Any], Changes], varied: Iterable[str
     return checked
 
 
-def limits_input(screen: Screen, study_of: Callable[[Screen], Any]) -> Control:
+def limit_inputs(screen: Screen, study_of: Callable[[Screen], Any]) -> list[Control]:
     """Return the rows of limits of a study of the screen; those that the joint does not have are refused."""
 
     def present(name: str) -> float:
@@ -206,7 +209,7 @@ def limits_input(screen: Screen, study_of: Callable[[Screen], Any]) -> Control:
         allowed(study_of(screen), limits_of(replace(screen, limits=limits)))
         return {"limits": limits}
 
-    return limits_control(_LIMITED, screen.limits, screen.reading, present, change)
+    return limit_controls(_LIMITED, screen.limits, screen.reading, present, change)
 
 
 def _drawn(screen: Screen) -> dict[str, Content]:

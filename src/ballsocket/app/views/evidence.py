@@ -6,11 +6,12 @@ import io
 import tempfile
 import zipfile
 from collections.abc import Hashable, Iterator, Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import partial
 from html import escape
 from math import prod
 from operator import itemgetter
+from os import PathLike
 from pathlib import Path
 from shutil import rmtree
 from typing import Any
@@ -44,13 +45,12 @@ from ..pressing import pressed
 from ..running import Reached, Report, Work
 from ..state.screen import EvidenceQuestion, Screen, phrases_in, phrases_of
 from ..state.use import Use
-from ..view import Document, field_places
+from ..view import Document
 from ..widgets.controls import Changes, Control, changed, chosen, segments, text, tolerances_input
-from ..widgets.limit_rows import limits_control, present_value
+from ..widgets.limit_rows import limit_controls, present_value
 from ..widgets.words import VERDICT_KINDS
 
 _NO_YES = ("no", "yes")
-_INPUTS = field_places("evidence", (entry.name for entry in fields(EvidenceQuestion)))
 _LIMITED = ("max_pressure", "half_angle", "edge_distance", "indentation", "area", "utilisation")
 _NO_LIMIT = "Evidence needs a limit to decide on: add one, such as the largest pressure at most 20 MPa"
 _HIP, _QUESTION = "hip.toml", "question.toml"
@@ -62,11 +62,11 @@ class Evidence(LongView):
     """View that gathers evidence for a question and resumes after a stop."""
 
     title, name, run_label, longest = "Evidence", "evidence", "Gather the evidence", EVIDENCE_SECONDS
-    body = long_body("evidence", _INPUTS, '<div id="evidence-found"></div>').replace("inputs-row", "asking")
+    body = long_body("evidence", '<div id="evidence-found"></div>').replace("inputs-row", "asking")
 
     def begin(self) -> None:
         super().begin()
-        self._folder = ""
+        self._folder: WorkFolder | None = None
         self.actions |= {"evidence.take": self._take, "evidence.allowable": self._limit_allowable}
 
     def question_of(self, screen: Screen) -> Hashable:
@@ -78,9 +78,7 @@ class Evidence(LongView):
         axes_of(screen.asked, screen.file, screen.use)  # an invalid question is refused at once
         if not screen.asked.limits.strip():
             raise ValueError(_NO_LIMIT)
-        if not self._folder:
-            self._folder = tempfile.mkdtemp(prefix="ballsocket-")
-            finalize(self, rmtree, self._folder, ignore_errors=True)  # of a page that is forgotten
+        self._folder = self._folder or WorkFolder()
         return partial(gather_pack, screen.asked, screen.file, screen.use, self._folder)
 
     def controls(self, screen: Screen) -> list[Control]:
@@ -99,7 +97,7 @@ class Evidence(LongView):
             chosen(screen, "asked.influence", "Influence of the model on the decision", LEVELS, segments),
             chosen(screen, "asked.consequence", "Consequence of a wrong decision", LEVELS, segments),
             text(screen, "asked.accuracy", "Allowed error of the numbers"),
-            limits_control(_LIMITED, _limits(screen.asked), screen.reading, present, limited),
+            *limit_controls(_LIMITED, _limits(screen.asked), screen.reading, present, limited),
             text(screen, "asked.matrix", "Cases other than the load here, such as force = 2, 3 kN"),
             tolerances_input(screen),
             text(screen, "asked.friction", "Coefficient of friction, if any"),
@@ -132,8 +130,7 @@ class Evidence(LongView):
 
     def leave(self) -> None:
         super().leave()
-        if self._folder:
-            rmtree(self._folder, ignore_errors=True)
+        self._folder = None
 
 
 def _limits(question: EvidenceQuestion) -> tuple[Limit, ...]:
@@ -280,7 +277,23 @@ def axes_of(inputs: EvidenceQuestion, file: JointFile, use: Use) -> dict[str, tu
             raise ValueError(str(error).removeprefix(f"{_QUESTION}: ")) from error
 
 
-def gather_pack(inputs: EvidenceQuestion, file: JointFile, use: Use, folder: str, report: Report) -> EvidencePack:
+class WorkFolder:
+    """Temporary folder that exists as long as a page or a run refers to it; the process of a run gets its path."""
+
+    def __init__(self) -> None:
+        self._path = Path(tempfile.mkdtemp(prefix="ballsocket-"))
+        finalize(self, rmtree, self._path, ignore_errors=True)
+
+    def __fspath__(self) -> str:
+        return str(self._path)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Path, (self._path,)
+
+
+def gather_pack(
+    inputs: EvidenceQuestion, file: JointFile, use: Use, folder: PathLike[str], report: Report
+) -> EvidencePack:
     """Gather evidence in a separate process, reusing the results that the folder holds."""
     path = Path(folder)
     question = write_question(inputs, file, use, path)

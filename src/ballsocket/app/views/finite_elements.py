@@ -33,7 +33,7 @@ from ..pressing import pressure_chart
 from ..results import without_name
 from ..running import Reached, Report, Work
 from ..state.screen import LINER_LAWS, Screen
-from ..view import Document, field_places
+from ..view import Document
 from ..widgets.blocks import Content, notes_list, sentence, table
 from ..widgets.controls import Control, chosen, segments
 from ..widgets.joint_controls import cup_controls
@@ -42,7 +42,6 @@ from ..widgets.words import checked, distinct_quantities, percent
 
 _NAME = "judge"
 _CUP_FIELDS = ("arc_of_cover", "chamfer", "interface")
-_FIELDS = (*_CUP_FIELDS, "liner_law")
 _LOAD_STEPS = (0.25, 0.5, 0.75, 1.0)
 
 
@@ -52,7 +51,6 @@ class ElementCheck(LongView):
     name, title, run_label = _NAME, "Check by finite elements", "Run finite elements"
     body = long_body(
         _NAME,
-        field_places(_NAME, _FIELDS),
         f'<div id="{_NAME}-numbers"></div><div id="{_NAME}-picture" class="beside"></div>',
     )
 

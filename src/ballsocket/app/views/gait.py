@@ -7,7 +7,9 @@ from collections.abc import Hashable
 from dataclasses import dataclass, replace
 from functools import partial
 from html import escape
+from itertools import groupby
 from math import radians
+from operator import attrgetter
 from typing import Any
 
 import numpy
@@ -22,10 +24,10 @@ from ...reports.figure_files import figure_bytes
 from ...reports.hip_plots import course_figure
 from ...reports.pages import picture
 from ...reports.style import BLUE, INK, LineStyle
-from ...reports.svg import attribute, levels_between
+from ...reports.svg import levels_between
 from ..long_view import LongView, LongWork, long_body
 from ..pictures.bore import CELLS_EDGE, BoreField, bare_bore, bore_map, colour_scale, node_field, shape_of, viewer
-from ..pictures.chart import Curve, chart, charts, plain_numbers, spans
+from ..pictures.chart import Curve, chart, charts, spans
 from ..pressing import axis_end
 from ..running import Work
 from ..state.screen import Screen
@@ -39,9 +41,8 @@ from .hip_runs import MERIDIANS, RINGS, Frames, GaitFilm, GaitResult, gait_key, 
 
 _LARGEST = 100_000  # characters of a table
 _FILM_SECONDS = 300.0
-_INPUTS = """<div data-field="gait.cycle"></div><div data-field="gait.body_weight"></div>
-<div data-field="gait.contact"></div>
-<div class="field"><label class="label" for="gait-own">Custom cycle (table: phase or time, force, angles)</label>
+_UPLOAD = """<div class="field">
+<label class="label" for="gait-own">Custom cycle (table: phase or time, force, angles)</label>
 <input id="gait-own" type="file" accept=".csv,.txt,.dat,.mot,.sto" data-tell-file="gait.own">
 <button type="button" class="plain" data-tell="gait.sample">Save a sample</button>
 <div id="gait-question" role="alert"></div></div>"""
@@ -64,7 +65,7 @@ class Gait(LongView):
     """View of a cycle that is computed in a process and played by the page; its film follows by itself."""
 
     name, title, run_label, automatic = "gait", "Gait", "Compute the cycle", True
-    body = long_body("gait", _INPUTS, _SHOWN)
+    body = long_body("gait", _SHOWN, _UPLOAD)
 
     def begin(self) -> None:
         super().begin()
@@ -125,7 +126,7 @@ class Gait(LongView):
     def show_result(self, screen: Screen, result: GaitResult | None) -> None:
         if result is None:
             bore = bare_bore(screen.file.cup, radians(90.0))
-            self.put(numbers="", viewer="", flat=bore, courses=empty_charts(screen.reading))
+            self.put(numbers="", viewer="", flat=bore, courses=gait_charts(None, None, screen.reading))
         elif result is self.long.result(screen):
             self.film.show(screen)
         else:
@@ -179,9 +180,7 @@ class Gait(LongView):
 
     def document(self, screen: Screen) -> Document:
         result, film, reading = self.result(screen), self.film.result(screen), screen.reading
-        courses = {
-            course.label(reading): values for charted in courses_of(result, film, reading) for course, values in charted
-        }
+        courses = {course.label(reading): values for course, values in courses_of(result, film, reading).items()}
         heads = ["phase [%]", *courses]
         rows = numpy.stack([result.phase, *courses.values()], axis=1).tolist()
         numbers = {
@@ -243,9 +242,10 @@ def _numbers(result: GaitResult, film: GaitFilm | None, reading: Reading) -> Con
 
 @dataclass(frozen=True)
 class Course:
-    """Quantity over the cycle: its field of `GaitResult` or `GaitFilm`, its name, and its unit."""
+    """Quantity over the cycle: its field of `GaitResult` or `GaitFilm`, the number of its chart, its name and unit."""
 
     field: str
+    chart: int
     name: str
     quantity: Quantity | None = None
     own_unit: Unit = _NM
@@ -257,81 +257,51 @@ class Course:
     def label(self, reading: Reading) -> str:
         return f"{self.name}{self.unit(reading).text_in_brackets}"
 
-    def of(self, result: GaitResult | GaitFilm, reading: Reading) -> numpy.ndarray:
-        return numpy.asarray(getattr(result, self.field)) * self.unit(reading).factor
 
-
-_LOAD, _PRESSURE = Course("force", "load", CONTACT["force"]), CONTACT["max_pressure"]
-_PRESS_CHARTS = (
-    (_LOAD,),
-    (Course("pressure", _PRESSURE.title, _PRESSURE),),
-    (Course("edge", DERIVED["edge_distance"].title, DERIVED["edge_distance"]),),
+_PRESSURE, _EDGE = CONTACT["max_pressure"], DERIVED["edge_distance"]
+_COURSES = (
+    Course("force", 0, "load", CONTACT["force"]),
+    Course("pressure", 1, _PRESSURE.title, _PRESSURE),
+    Course("edge", 2, _EDGE.title, _EDGE),
+    Course("least", 3, "smallest film thickness"),
+    Course("central", 3, "central film thickness", line=_BLUE),
+    Course("ratio", 4, "film ratio λ", own_unit=_RATIO),
 )
-_FILM_CHARTS = (
-    (Course("least", "smallest film thickness"), Course("central", "central film thickness", line=_BLUE)),
-    (Course("ratio", "film ratio λ", own_unit=_RATIO),),
-)
+Courses = dict[Course, numpy.ndarray]  # values in the units of the page
 
 
-def courses_of(result: GaitResult, film: GaitFilm | None, reading: Reading) -> list[list[tuple[Course, numpy.ndarray]]]:
-    """List the courses of each chart with their values."""
-    known = [[(course, course.of(result, reading)) for course in charted] for charted in _PRESS_CHARTS]
-    if film is None:
-        return known
-    return [*known, *([(course, course.of(film, reading)) for course in charted] for charted in _FILM_CHARTS)]
+def courses_of(result: GaitResult | None, film: GaitFilm | None, reading: Reading) -> Courses:
+    """Return the courses that are known, in the units of the page."""
+    fields = {name: values for part in (result, film) if part is not None for name, values in vars(part).items()}
+    return {course: course.unit(reading).factor * fields[course.field] for course in _COURSES if course.field in fields}
 
 
-def gait_charts(result: GaitResult, film: GaitFilm | None, reading: Reading) -> Content:
-    """Return the charts of a cycle, and the numbers with which the page plays it."""
+def gait_charts(result: GaitResult | None, film: GaitFilm | None, reading: Reading) -> Content:
+    """Return the charts of a cycle, with which the page plays it; empty ones while it is prepared."""
     courses = courses_of(result, film, reading)
-    listed = [
-        {"name": course.name, "unit": course.unit(reading).text, "values": plain_numbers(values, 5), "chart": number}
-        for number, charted in enumerate(courses)
-        for course, values in charted
-    ]
-    data = {"phase": plain_numbers(result.phase, 5), "courses": listed, "rim": result.rim.tolist()}
-    drawn = [_chart(charted, result, reading) for charted in courses]
-    pending = () if film is not None else (_empty_chart(charted, reading) for charted in _FILM_CHARTS)
-    return [f"<div {attribute('player', data)}></div>", *drawn, *pending]
+    return [_chart(list(charted), courses, result, reading) for _, charted in groupby(_COURSES, attrgetter("chart"))]
 
 
-def empty_charts(reading: Reading) -> Content:
-    """Return axes without curves for a cycle that is being prepared."""
-    return [_empty_chart(charted, reading) for charted in (*_PRESS_CHARTS, *_FILM_CHARTS)]
-
-
-def _empty_chart(charted: tuple[Course, ...], reading: Reading) -> Block:
-    words = f"{charted[0].label(reading)}: Preparing ..."
-    return charts(chart(words, _PHASE_LABEL, "", {}, (100.0, 1.0), _SIZE, caption=[words]))
-
-
-def _chart(charted: list[tuple[Course, numpy.ndarray]], result: GaitResult, reading: Reading) -> Block:
-    unit = charted[0][0].unit(reading)
-    known = numpy.concatenate([values[numpy.isfinite(values)] for _, values in charted])
-    highest = axis_end(1.05 * float(known.max(initial=0.0)))
-    curves = {
-        course.name: Curve(result.phase, numpy.where(numpy.isfinite(values), values, numpy.nan), course.line)
-        for course, values in charted
-    }
-    flagged = spans(result.phase, result.rim) if charted[0][0].field == "edge" else []
-    sentences = []
-    for course, values in charted:
+def _chart(charted: list[Course], courses: Courses, result: GaitResult | None, reading: Reading) -> Block:
+    """Draw some courses in one chart, without curves before they are known."""
+    unit = charted[0].unit(reading)
+    if result is None or charted[0] not in courses:
+        words = f"{charted[0].label(reading)}: Preparing ..."
+        return charts(chart(words, _PHASE_LABEL, "", {}, (100.0, 1.0), _SIZE, caption=[words]))
+    curves, sentences, highest = {}, [], 0.0
+    for course in charted:
+        values = numpy.where(numpy.isfinite(courses[course]), courses[course], numpy.nan)
+        curves[course.name] = Curve(result.phase, values, course.line)
         finite = values[numpy.isfinite(values)]
         ends = f"{number_text(finite.min())} to {number_text(finite.max())} {unit.text}" if finite.size else "no number"
         sentences.append(f"{course.name}: {ends}".rstrip())
+        highest = max(highest, float(finite.max(initial=0.0)))
+    flagged = spans(result.phase, result.rim) if charted[0].field == "edge" else []
     words = "; ".join(sentences)
     caption = [words, "✗ red: rim contact"] if flagged else [words]
-    drawn = chart(
-        f"over the cycle: {words}",
-        _PHASE_LABEL,
-        unit.text or "λ",
-        curves,
-        (100.0, highest),
-        _SIZE,
-        flagged,
-        0.0,
-        caption,
-    )
+    ends_of_axes = (100.0, axis_end(1.05 * highest))
+    labels = f"over the cycle: {words}", _PHASE_LABEL, unit.text or "λ"
+    drawn = chart(*labels, curves, ends_of_axes, _SIZE, flagged, caption=caption)
     return charts(drawn, legend=[] if len(charted) > 1 else None)
 
 

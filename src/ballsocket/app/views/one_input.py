@@ -17,12 +17,12 @@ from ...studies.variance_shares import uncertainty_tables
 from ..pictures.chart import Curve, chart, charts, spans
 from ..pressing import axis_end, effects_are_slow, effects_of
 from ..state.screen import MAPPED, Screen
-from ..view import Document, View, field_places
+from ..view import Document, View
 from ..widgets.blocks import Block, Content, answer_blocks, sentence
 from ..widgets.controls import Control, chosen, tolerances_input
 from ..widgets.limit_rows import limit_text, present_value
 from ..widgets.words import alert
-from .design_map import axis_control, checked, end_control, limits_input, study_rows
+from .design_map import axis_control, checked, end_control, limit_inputs, study_rows
 from .map_study import limits_of, models_of, swept
 
 _LIMIT = LineStyle(VERMILLION, (2.0, 1.5))
@@ -32,8 +32,8 @@ class OneInput(View):
     """View of a result over one parameter, computed as a study by a quick model."""
 
     name, title = "curve", "One input"
-    body = f"""
-<div class="inputs-row">{field_places("curve", ("across", "across_low", "across_high", "quantity", "model"))}</div>
+    body = """
+<div class="inputs-row" id="curve-inputs"></div>
 <div data-field="curve.limits"></div>
 <div id="curve-trouble" role="alert"></div>
 <div id="curve-chart"></div>
@@ -51,7 +51,7 @@ class OneInput(View):
             chosen(screen, "map_model", "Model", models_of(screen), name="model"),
         ]
         edits = [Control(control.field, checked(screen, control.read, ["across"])) for control in controls]
-        return [*edits, limits_input(screen, swept), tolerances_input(screen)]
+        return [*edits, *limit_inputs(screen, swept), tolerances_input(screen)]
 
     def show(self, screen: Screen) -> None:
         if not self.channel.shown_value("#curve-chart"):

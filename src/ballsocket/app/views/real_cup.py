@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache, partial
 from math import radians
-from types import MappingProxyType
 from typing import Any
 
 import numpy
 
 from ...comparison import Comparison
-from ...core.unit_systems import Units
 from ...elasticity.finite_elements.mesh import socket_shape
 from ...elasticity.finite_elements.progress import progress_to
 from ...elasticity.off_axis.contact import OffAxisContact
 from ...elasticity.off_axis.grid import rim_grid
 from ...elasticity.off_axis.model import Sphere
-from ...elasticity.off_axis.orientations import orient
+from ...elasticity.off_axis.orientations import Orientations, orient
 from ...elasticity.off_axis.ring_matrices import are_cup_rings_cached
 from ...files.joint_file import JointFile
 from ...model_catalogue import OFF_AXIS, named_models
@@ -27,7 +25,6 @@ from ...problem.cup import Cup, Side
 from ...question import PressQuestion, answer, complete
 from ...reports.cup_plots import cup_figure
 from ...reports.figure_files import figure_bytes
-from ...reports.orientation_plots import orientation_figure
 from ...reports.press_report import press_lede, press_sections
 from ..long_view import LongView
 from ..results import RESULTS, without_name
@@ -80,7 +77,7 @@ def pressed_in_cup(file: JointFile) -> OffAxisContact:
 def cup_document(
     screen: Screen,
     rows: Callable[[OffAxisContact], list[list[Any]]],
-    sections: Mapping[str, tuple[str, str]] = MappingProxyType({}),
+    sections: Callable[[], Mapping[str, tuple[str, str]]] = dict,
 ) -> Document:
     """Return the content of a file for the contact in the real cup; raise ValueError while it is prepared."""
     if not is_prepared(screen.file):
@@ -90,7 +87,7 @@ def cup_document(
     return Document(
         picture=lambda form: figure_bytes(cup_figure(contact, units), form),
         rows=lambda: rows(contact),
-        sections=lambda: {**press_sections(pressed, units), **sections},
+        sections=lambda: {**press_sections(pressed, units), **sections()},
         lede=lambda: press_lede(contact, screen.file.cup, units),
         contact=contact,
     )
@@ -115,28 +112,13 @@ class RealCupView(LongView):
         return partial(set_up, *bore_of(screen.file))
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class OrientationMap:
-    """Edge distances (mm) and pressures (MPa) over inclinations and anteversions (rad).
-
-    `held` is True where the bore holds the ball; `figures` has that of `Orientations` as PNG.
-    """
-
-    inclination: numpy.ndarray
-    anteversion: numpy.ndarray
-    edge_distance: numpy.ndarray
-    max_pressure: numpy.ndarray
-    held: numpy.ndarray
-    figures: dict[Units, bytes]
-
-
 def orientation_key(file: JointFile) -> Hashable:
     """Return a key of a map over orientations."""
     return bore_of(file), file.cup.side, tuple(file.load.items()), tuple(file.aim.items())
 
 
-def map_orientations(file: JointFile, report: Report) -> OrientationMap:
-    """Press one load of the body in cups of many orientations, in a separate process."""
+def map_orientations(file: JointFile, report: Report) -> Orientations:
+    """Press one load of the body in cups of many orientations, in a separate process; leave out the contacts."""
     if "tilt" in file.aim:
         raise ValueError("a load that is given by its tilt turns with the cup: give its direction in the body")
     model = Sphere(cup=complete(file)[0].cup, **file.aim)
@@ -149,11 +131,4 @@ def map_orientations(file: JointFile, report: Report) -> OrientationMap:
 
     with progress_to(heard):
         orientations = orient(file.joint, model=model, inclination=INCLINATIONS, anteversion=ANTEVERSIONS, **file.load)
-    return OrientationMap(
-        inclination=orientations.inclination,
-        anteversion=orientations.anteversion,
-        edge_distance=orientations.edge_distance,
-        max_pressure=orientations.max_pressure,
-        held=orientations.held,
-        figures={units: figure_bytes(orientation_figure(orientations, units=units)) for units in Units},
-    )
+    return replace(orientations, contacts=())

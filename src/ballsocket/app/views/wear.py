@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Mapping
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import partial
 from html import escape
@@ -14,6 +14,7 @@ from ...core.kinds import Unit
 from ...core.quantities import CONTACT, DERIVED
 from ...files.joint_file import JointFile
 from ...hip.law_fields import LawField
+from ...hip.wear_law import COEFFICIENT
 from ...hip.wear_laws import WEAR_LAWS
 from ...problem.presets import joints
 from ...reports.pages import picture
@@ -25,15 +26,14 @@ from ..pressing import axis_end
 from ..results import RESULTS
 from ..running import Work
 from ..state.screen import Screen
-from ..state.use import CHOICES, CREEP_INPUTS, LAW_INPUTS, WEAR_INPUTS
-from ..view import Document, field_places
+from ..state.use import CHOICES, CREEP_INPUTS, LAW_INPUTS, WEAR_INPUTS, Use
+from ..view import Document
 from ..widgets.blocks import Content, notes_list, sentence, table
 from ..widgets.controls import (
     Changes,
     Control,
     amount,
     capital,
-    changed,
     choice,
     chosen,
     cycle_controls,
@@ -46,10 +46,6 @@ from .hip_runs import WEAR_SECONDS, WearResult, simulate_designs, wear_key
 
 _ALONE, _NOW, _AS_COMPARED = "", "as it is now", "as added"
 _DEPTH, _PRESSURE = CONTACT["indentation"], CONTACT["max_pressure"]  # quantities whose units depths and pressures have
-_FIELDS = (
-    *("cycle", "body_weight", "contact", "law", "coefficient", *WEAR_INPUTS, "spread", "millions", "creep"),
-    *(*CREEP_INPUTS, "beside"),
-)
 _LAWS = [(name, capital(law.title)) for name, law in WEAR_LAWS.items()]
 _DESIGN_LINES = (LineStyle(BLUE), LineStyle(VERMILLION, (6.0, 2.0)))
 
@@ -65,34 +61,15 @@ def _beside(screen: Screen) -> Control:
     return Control(choice("beside", "Compare with", options, _AS_COMPARED if screen.beside else _ALONE), read)
 
 
-def _coefficient(screen: Screen) -> Control:
-    """Return the wear coefficient, hidden for a law without one."""
-    part = screen.use.coefficient_field
-
-    def refuse(value: Any) -> Changes:
-        raise ValueError(f"the law {screen.use.law!r} has no coefficient")
-
-    if part is None:
-        return Control(number("coefficient", "Coefficient", Unit(""), (0.0, 1.0), 0.01, 0.0), refuse).but(hidden=True)
-    return _law_control(
-        "coefficient",
-        part,
-        screen.use.coefficient,
-        "Coefficient",
-        lambda value: changed(screen, "use.coefficient", value),
-    )
+def _law_numbers(screen: Screen, keys: Iterable[str]) -> Iterator[Control]:
+    """Yield the inputs of those numbers of `LAW_INPUTS` that the chosen laws have."""
+    use = screen.use
+    for key in (key for key in keys if key in use.used_inputs):
+        edit, part = partial(use.with_law_number, key), LAW_INPUTS[key]
+        yield _law_number(key, part, capital(part.meaning), use.law_number(key), edit)
 
 
-def _law_number(screen: Screen, key: str) -> Control:
-    """Return a number of `LAW_INPUTS`, hidden unless a chosen law has it."""
-    part, use = LAW_INPUTS[key], screen.use
-    control = _law_control(
-        key, part, use.law_number(key), capital(part.meaning), lambda value: {"use": use.with_law_number(key, value)}
-    )
-    return control.but(hidden=key not in use.used_inputs)
-
-
-def _law_control(key: str, part: LawField, value: float, title: str, change: Callable[[float], Changes]) -> Control:
+def _law_number(key: str, part: LawField, title: str, value: float, edit: Callable[[float], Use]) -> Control:
     """Return the input of a number of a law, over three decades around its example.
 
     A typed number has a decimal point or comma, with or without its unit.
@@ -101,7 +78,8 @@ def _law_control(key: str, part: LawField, value: float, title: str, change: Cal
     step = part.example / 100 or 0.01
 
     def read(text: Any) -> Changes:
-        return change(float(part.unit.read(key, text.strip().replace(",", ".") if isinstance(text, str) else text)))
+        plain = text.strip().replace(",", ".") if isinstance(text, str) else text
+        return {"use": edit(float(part.unit.read(key, plain)))}
 
     return Control(number(key, f"{title}{unit}", Unit(""), (step, 1000 * step), step, value), read)
 
@@ -112,19 +90,24 @@ class Wear(LongView):
     title, name, run_label, longest = "Wear", "wear", "Run the wear", WEAR_SECONDS
     body = long_body(
         "wear",
-        field_places("wear", _FIELDS),
         '<div id="wear-curve"></div><div class="beside" id="wear-maps"></div><div id="wear-numbers"></div>',
     )
 
     def controls(self, screen: Screen) -> list[Control]:
+        use, part = screen.use, screen.use.coefficient_field
+
+        def wearing(value: float) -> Use:
+            return replace(use, coefficient=value)
+
         return [
             *cycle_controls(screen),
             chosen(screen, "use.law", "Wear law", _LAWS),
-            _coefficient(screen),
-            *(_law_number(screen, key) for key in LAW_INPUTS),
+            *([_law_number(COEFFICIENT, part, "Coefficient", use.coefficient, wearing)] if part is not None else []),
+            *_law_numbers(screen, WEAR_INPUTS),
             amount(screen, "use.spread", "Patient-to-patient factor", (1.0, 3.0), 0.1),
             amount(screen, "use.millions", "Million cycles", (0.5, 20.0), 0.5),
             chosen(screen, "use.creep", "Include creep", CHOICES["creep"], segments),
+            *_law_numbers(screen, CREEP_INPUTS),
             _beside(screen),
         ]
 

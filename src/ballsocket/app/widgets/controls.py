@@ -83,6 +83,17 @@ def empty_number(name: str, label: str, unit: Unit, text: str = "") -> Field:
     return {"name": name, "kind": "number", "label": label, "unit": unit.text, "value": None, "text": text}
 
 
+def button(name: str, label: str, hint: str) -> Field:
+    """Return a button with a sign, and with words for screen readers."""
+    return {"name": name, "kind": "button", "label": label, "hint": hint, "value": None}
+
+
+def rows(name: str, label: str, add: str, names: Iterable[str]) -> Field:
+    """Return a group of the inputs of rows, whose names begin with its own, with a button that adds one."""
+    inside = [inner.removeprefix(f"{name}.") for inner in names]
+    return {"name": name, "kind": "rows", "label": label, "add": add, "names": inside, "value": ""}
+
+
 def words(name: str, label: str, value: str, rows: int = 1) -> Field:
     """Return an input for text of several rows."""
     return {"name": name, "kind": "words", "label": label, "value": value, "rows": rows}
@@ -138,8 +149,6 @@ def refusal_of(field: Field, error: ValueError, value: Any) -> Field | None:
 
     The refusal of a key becomes one of the field's label, and states the number in use.
     """
-    if field["kind"] == "limits":
-        return {"error": str(error), "refused": value, "wrong": getattr(error, "index", None)}
     if field["kind"] not in ("number", "words"):
         return None
     unit, label, kept = unit_suffix(field.get("unit", "")), field["label"], field.get("text")

@@ -241,7 +241,6 @@ def _with_joint(file: JointFile, **changes: Any) -> JointFile:
 def cup_controls(screen: Screen) -> list[Control]:
     """List the inputs of the cup and of the direction of its load; those without effect are hidden."""
     file, cup, tilted = screen.file, complete(screen.file)[0].cup, "tilt" in screen.file.aim
-    angles = {"inclination": tilted, "anteversion": tilted, "arc_of_cover": False}
     leans = dict(zip(_LEANS, leaning(file), strict=True))
     aims = segments("aim", "Load direction given", _AIMS.items(), _AXIS if tilted else _BODY)
 
@@ -251,14 +250,15 @@ def cup_controls(screen: Screen) -> list[Control]:
     def turned(value: float) -> JointFile:
         return varied(file, {"load": {"tilt": value}})
 
+    def of_cup(name: str, hidden: bool = False) -> Control:
+        value = cup.chamfer if name == "chamfer" else degrees(getattr(cup, name))
+        return angle(name, number_of(f"cup.{name}"), value, hidden, partial(_with_cup, file, name))
+
     return [
-        *(
-            angle(name, number_of(f"cup.{name}"), degrees(getattr(cup, name)), hidden, partial(_with_cup, file, name))
-            for name, hidden in angles.items()
-        ),
-        angle("chamfer", number_of("cup.chamfer"), cup.chamfer, False, partial(_with_cup, file, "chamfer")),
-        *(angle(name, _LEANS[name], leans[name], tilted, partial(_with_lean, file, name)) for name in _LEANS),
+        *(of_cup(name, tilted) for name in ("inclination", "anteversion")),
         angle("tilt", _TILT, degrees(file.aim.get("tilt", 0.0)), not tilted, turned),
+        *(angle(name, _LEANS[name], leans[name], tilted, partial(_with_lean, file, name)) for name in _LEANS),
+        *(of_cup(name) for name in ("arc_of_cover", "chamfer")),
         _control(aims, lambda aim: replace(file, aim={} if aim == _BODY else {"tilt": file.tilt})),
         _control(file_choice("cup.side", cup.side.value), partial(_with_cup, file, "side")),
         _control(file_choice("cup.interface", cup.interface.value), partial(_with_cup, file, "interface")),

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context
+from functools import partial
+from itertools import starmap
 from math import isfinite, nan
 from typing import Any
 
 from ...contact import Contact
-from ...core.checks import check_names, require, shown
+from ...core.checks import require
 from ...core.quantities import CONTACT, JOINT, PARTS, QUANTITIES
 from ...files.joint_file import JointFile
 from ...studies.limits import Limit
 from ...studies.parameters import nominal_value
 from ...studies.task import EDGE_DISTANCE
-from .controls import Changes, Control, capital, typed_quantity
+from .controls import Changes, Control, Options, button, capital, choice, empty_number, rows, typed_quantity
 from .reading import Reading, box_text
 
 _SIGNS = {"<=": "at most", ">=": "at least"}
@@ -23,60 +25,64 @@ _ROUNDINGS = {"<=": ROUND_CEILING, ">=": ROUND_FLOOR}
 
 _DIGITS = 3  # digits of a limit that starts at the present design
 
-Row = tuple[str, str, str]  # name of a quantity, sign, and the text of the value in the unit of the page
+Row = tuple[str, str, float]  # name of a quantity, sign, and value in internal units
+Present = Callable[[str], float]  # number of the present design, by its name
 
 
-class WrongRowError(ValueError):
-    """Refusal of one row of limits, by its index."""
-
-    def __init__(self, index: int, sentence: str) -> None:
-        super().__init__(sentence)
-        self.index = index
-
-
-def limits_control(
+def limit_controls(
     names: Iterable[str],
     limits: tuple[Limit, ...],
     reading: Reading,
-    present: Callable[[str], float],
+    present: Present,
     change: Callable[[tuple[Limit, ...]], Changes],
-) -> Control:
-    """Return the input "limits" for limits on the quantities of `names`.
+) -> list[Control]:
+    """Return the inputs of limits on the quantities of `names`: four of each row, and their group "limits".
 
-    `present` gives the number of the design for a row without a value.
+    A row that is added, or gets another quantity, starts at the number of the present design.
     """
-    rows = [row for limit in limits for row in _rows_of(limit, reading)]
-    listed = dict.fromkeys([*names, *(row[0] for row in rows)])
-    field = {
-        "name": "limits",
-        "kind": "limits",
-        "label": "Limits",
-        "options": [[key, capital(QUANTITIES[key].title), reading.unit(QUANTITIES[key]).text] for key in listed],
-        "signs": [list(pair) for pair in _SIGNS.items()],
-        "value": [list(row) for row in rows],
-    }
-    return Control(field, lambda value: change(read_limits(value, limits, reading, present)))
+    listed_rows = [(limit.name, *end) for limit in limits for end in _ends(limit)]
+    used = [name for name, _, _ in listed_rows]
+    titles = [(name, capital(QUANTITIES[name].title)) for name in dict.fromkeys([*names, *used])]
+    unused = next((name for name, _ in titles if name not in used), titles[0][0])
+
+    def with_row(index: int, *new: Row) -> Changes:
+        return change(tuple(starmap(_limit, [*listed_rows[:index], *new, *listed_rows[index + 1 :]])))
+
+    inputs = [
+        control
+        for index, row in enumerate(listed_rows)
+        for control in _row_controls(f"limits.{index}", row, titles, reading, present, partial(with_row, index))
+    ]
+    field = rows("limits", "Limits", "Add a limit", [control.field["name"] for control in inputs])
+    field["value"] = "; ".join(limit_text(limit, reading) for limit in limits)
+    added = partial(_at_present, unused, "<=", reading, present)
+    return [*inputs, Control(field, lambda value: with_row(len(listed_rows), added()))]
 
 
-def read_limits(
-    value: Any, limits: tuple[Limit, ...], reading: Reading, present: Callable[[str], float]
-) -> tuple[Limit, ...]:
-    """Read rows as the page sends them; raise `WrongRowError` for a wrong row, and ValueError if there are no rows."""
-    if not isinstance(value, list) or not all(
-        isinstance(row, list) and len(row) == 3 and all(isinstance(cell, str) for cell in row) for row in value
-    ):
-        raise ValueError(f"{shown(value)} is not a list of limits: each has a quantity, a sign and a value")
-    check_names([row[0] for row in value], QUANTITIES, "among what can be limited")
-    check_names([row[1] for row in value], _SIGNS, "as the sign of a limit")
-    known = {row: limit for limit in limits for row in _rows_of(limit, reading)}  # an untouched row is not rounded
-    read = []
-    for index, (name, sign, text) in enumerate(value):
-        row = name, sign, text.strip()
-        try:
-            read.append(known.get(row) or _limit(row, reading, present))
-        except ValueError as error:
-            raise WrongRowError(index, str(error)) from error
-    return tuple(read)
+def _row_controls(
+    name: str, row: Row, titles: Options, reading: Reading, present: Present, with_row: Callable[..., Changes]
+) -> list[Control]:
+    """Return the inputs of a row: quantity, sign, value, and the button that removes it."""
+    key, sign, end = row
+    quantity, title = QUANTITIES[key], capital(QUANTITIES[key].title)
+    unit = reading.unit(quantity)
+
+    def read_end(text: Any) -> Changes:
+        number = typed_quantity(title, text, quantity, reading)
+        require(title, number, isfinite(number), "a limit is a finite number")
+        return with_row((key, sign, number))
+
+    return [
+        Control(
+            choice(f"{name}.quantity", "quantity", titles, key),
+            lambda other: with_row(_at_present(other, sign, reading, present)),
+        ),
+        Control(
+            choice(f"{name}.sign", "kind of limit", _SIGNS.items(), sign), lambda other: with_row((key, other, end))
+        ),
+        Control(empty_number(f"{name}.value", title, unit, box_text(end * unit.factor, unit.text)), read_end),
+        Control(button(f"{name}.remove", "×", "Remove this limit"), lambda value: with_row()),
+    ]
 
 
 def present_value(file: JointFile, name: str, contact: Contact | None = None) -> float:
@@ -99,23 +105,17 @@ def limit_text(limit: Limit, reading: Reading) -> str:
     return f"{quantity.title} {' and '.join(ends)}"
 
 
-def _limit(row: Sequence[str], reading: Reading, present: Callable[[str], float]) -> Limit:
-    name, sign, text = row
-    quantity, title = QUANTITIES[name], capital(QUANTITIES[name].title)
-    if text:
-        end = typed_quantity(title, text, quantity, reading)
-        require(title, end, isfinite(end), "a limit is a finite number")
-    else:
-        factor = reading.unit(quantity).factor
-        digits = f"{present(name) * factor:.12g}"  # without the error of a conversion
-        end = float(Context(prec=_DIGITS, rounding=_ROUNDINGS[sign]).create_decimal(digits)) / factor
-        require(title, end, isfinite(end), "this design has no value for it: type one")
+def _at_present(name: str, sign: str, reading: Reading, present: Present) -> Row:
+    """Return a row that the present design keeps."""
+    factor = reading.unit(QUANTITIES[name]).factor
+    digits = f"{present(name) * factor:.12g}"  # without the error of a conversion
+    end = float(Context(prec=_DIGITS, rounding=_ROUNDINGS[sign]).create_decimal(digits)) / factor
+    require(capital(QUANTITIES[name].title), end, isfinite(end), "this design has no value for it: type one")
+    return name, sign, end
+
+
+def _limit(name: str, sign: str, end: float) -> Limit:
     return Limit(name=name, high=end) if sign == "<=" else Limit(name=name, low=end)
-
-
-def _rows_of(limit: Limit, reading: Reading) -> list[Row]:
-    unit = reading.unit(QUANTITIES[limit.name])
-    return [(limit.name, sign, box_text(end * unit.factor, unit.text)) for sign, end in _ends(limit)]
 
 
 def _ends(limit: Limit) -> list[tuple[str, float]]:
