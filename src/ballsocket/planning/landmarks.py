@@ -16,7 +16,7 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import shown
 from ..core.display import counted
-from ..core.input_files import open_input
+from ..core.input_files import read_input
 from ..core.records import Input
 from ..files.cells import decode_text
 from ..problem.cup import Side
@@ -168,10 +168,7 @@ def _read_file(path: Path, coordinates: str | None) -> list[tuple[str, Numbers]]
     reader = _READERS.get("".join(path.suffixes[-2:]).lower()) or _READERS.get(path.suffix.lower())
     if reader is None:
         raise ValueError(f"{path.name}: landmarks are read from .fcsv and .mrk.json files of 3D Slicer")
-    with open_input(path) as stream:
-        raw = stream.read(_MAX_FILE_SIZE + 1)
-    if len(raw) > _MAX_FILE_SIZE:
-        raise ValueError(f"{path.name}: a landmark file has at most {_MAX_FILE_SIZE // 1_000_000} MB")
+    raw = read_input(path, _MAX_FILE_SIZE)
     try:
         points = list(reader(decode_text(raw), coordinates))
     except (ValueError, csv.Error) as error:

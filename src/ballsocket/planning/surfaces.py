@@ -14,7 +14,7 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import shown
 from ..core.display import counted
-from ..core.input_files import open_input
+from ..core.input_files import open_input, read_input
 from ..core.mesh_files import read_mesh_file
 from ..core.records import Input
 from ..files.cells import NumberedRow, decode_text, is_data, split_text
@@ -265,10 +265,7 @@ def read_points(path: str | Path, *, units: str = "mm") -> PointCloud:
 
 def _read_text(path: Path, units: str) -> tuple[Numbers, tuple[str, ...]]:
     """Return the points (n, 3) of a text, and notes on columns that are not read."""
-    with open_input(path) as file:
-        raw = file.read(_MAX_BYTES + 1)
-    if len(raw) > _MAX_BYTES:
-        raise ValueError(f"{path.name} has more than {_MAX_BYTES // 1_000_000} MB, the most that is read")
+    raw = read_input(path, _MAX_BYTES)
     try:
         lines = ["" if line.startswith(_COMMENTS) else line for line in map(str.strip, decode_text(raw).split("\n"))]
         first = next((number for number, line in enumerate(lines) if line), None)

@@ -224,7 +224,12 @@ class JaxSphere:
             raise ValueError(
                 'dtype = "float64" needs jax.config.update("jax_enable_x64", True) first: the default of JAX is single'
             )
-        gap, (force, direction) = self._bore.gap, _check_loads(force, direction)
+        gap, force = self._bore.gap, check_numeric("force", force)
+        shape = numpy.shape(force)
+        if len(shape) != 1 or 0 in shape:
+            raise ValueError(f"force of shape {shape} is not allowed: it is a row (loads,) of one or more forces")
+        direction = check_vectors("direction", direction, "x, y, z")
+        check_shape("direction", direction, ((3,), (1, 3), (*shape, 3)))
         force = xp.asarray(force, dtype=self.dtype)
         direction = xp.broadcast_to(xp.asarray(direction, dtype=self.dtype), (*force.shape, 3))
         c = self._replace("clearance", gap.clearance, clearance)
@@ -280,16 +285,6 @@ def _check_bore(model: Any, joint: Any) -> None:
     if any(numpy.shape(number) for number in joint.numbers()):
         raise TypeError("joint must have plain numbers, got arrays: one JaxSphere presses one joint")
     check_domain(model.domain, joint, model.name)
-
-
-def _check_loads(force: Any, direction: Any) -> tuple[Array, Array]:
-    """Check forces (loads,) and their directions (loads, 3) or (3,); return both as arrays."""
-    force, direction = check_numeric("force", force), check_vectors("direction", direction, "x, y, z")
-    shape = numpy.shape(force)
-    if len(shape) != 1 or 0 in shape:
-        raise ValueError(f"force of shape {shape} is not allowed: it is a row (loads,) of one or more forces")
-    check_shape("direction", direction, ((3,), (1, 3), (*shape, 3)))
-    return force, direction
 
 
 @cache

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import degrees, inf, radians
@@ -179,7 +178,12 @@ def orient(
            [ 0.2, -0.6]])
     """
     model = Sphere() if model is None else check_sphere(model)
-    _check_single(joint, load)
+    check_joint(joint)
+    if any(numpy.shape(arrays.to_numpy(number)) for number in joint.numbers()):
+        raise TypeError("joint must be one joint, of plain numbers: arrays of joints are not allowed")
+    for name, value in load.items():
+        if value is not None:
+            check_number(name, value)
     single = model.direction.ndim == 1
     require("directions of the model", model.direction.size // 3, single, "give one direction of the load")
     axes = [
@@ -203,15 +207,6 @@ def orient(
         seconds=perf_counter() - start,
         **fields,
     )
-
-
-def _check_single(joint: Any, load: Mapping[str, Any]) -> None:
-    check_joint(joint)
-    if any(numpy.shape(arrays.to_numpy(number)) for number in joint.numbers()):
-        raise TypeError("joint must be one joint, of plain numbers: arrays of joints are not allowed")
-    for name, value in load.items():
-        if value is not None:
-            check_number(name, value)
 
 
 def _check_angles(name: str, values: Array) -> Numbers:

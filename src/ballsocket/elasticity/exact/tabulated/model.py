@@ -255,10 +255,6 @@ def _ball_poisson(contact: Any) -> Array:
     return 0.3 + 0.0 * joint.liner.young if joint.ball is None else joint.ball.poisson + 0.0 * joint.liner.young
 
 
-def _backing_count(contact: Any) -> Array:
-    return len(contact.joint.backing) + 0.0 * contact.joint.liner.young
-
-
 _NOT_TABULATED = "outside the tables: use exact"
 
 
@@ -302,7 +298,12 @@ class Tabulated(Model):
         Range(quantity="joint.thickness_ratio", low=THICKNESS_RATIO[0], high=THICKNESS_RATIO[1], why=_NOT_TABULATED),
         Range(quantity="joint.modulus_ratio", high=0.0201, why=_NOT_TABULATED),
         Range(quantity=_ball_poisson, symbol="ν_ball", low=-0.01, high=0.501, why=_NOT_TABULATED),
-        Range(quantity=_backing_count, symbol="layers behind the liner", high=1.0, why=_NOT_TABULATED),
+        Range(
+            quantity=lambda contact: len(contact.joint.backing) + 0.0 * contact.joint.liner.young,
+            symbol="layers behind the liner",
+            high=1.0,
+            why=_NOT_TABULATED,
+        ),
         Range(quantity="joint.backing_ratio", high=1.0, why="a free outer surface is not in the tables: use exact"),
     )
     validity: ClassVar[tuple[Range, ...]] = (
