@@ -14,7 +14,7 @@ from typing import Any
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.checks import shown
+from ..core.checks import refusals_of, shown
 from ..core.display import counted
 from ..core.input_files import read_input
 from ..core.records import Input
@@ -169,10 +169,8 @@ def _read_file(path: Path, coordinates: str | None) -> list[tuple[str, Numbers]]
     if reader is None:
         raise ValueError(f"{path.name}: landmarks are read from .fcsv and .mrk.json files of 3D Slicer")
     raw = read_input(path, _MAX_FILE_SIZE)
-    try:
+    with refusals_of(path.name, csv.Error):
         points = list(reader(decode_text(raw), coordinates))
-    except (ValueError, csv.Error) as error:
-        raise ValueError(f"{path.name}: {error}") from error
     if not points:
         raise ValueError(f"{path.name} has no points")
     return points
