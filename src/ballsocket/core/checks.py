@@ -37,11 +37,11 @@ def require(name: str, value: Array, valid: Array, allowed: str) -> None:
 
 
 @contextmanager
-def refusals_of(name: str, *kinds: type[Exception]) -> Iterator[None]:
-    """Begin the message of each ValueError within the block, or error of further kinds, with a name, as of a file."""
+def refusals_of(name: str, kinds: tuple[type[Exception], ...] = (ValueError,)) -> Iterator[None]:
+    """Raise the errors of some kinds within the block as ValueError, whose message begins with a name, as of a file."""
     try:
         yield
-    except (ValueError, *kinds) as error:
+    except kinds as error:
         raise ValueError(f"{name}: {error}") from error
 
 

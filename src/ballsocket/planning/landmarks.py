@@ -169,7 +169,7 @@ def _read_file(path: Path, coordinates: str | None) -> list[tuple[str, Numbers]]
     if reader is None:
         raise ValueError(f"{path.name}: landmarks are read from .fcsv and .mrk.json files of 3D Slicer")
     raw = read_input(path, _MAX_FILE_SIZE)
-    with refusals_of(path.name, csv.Error):
+    with refusals_of(path.name, (ValueError, csv.Error)):
         points = list(reader(decode_text(raw), coordinates))
     if not points:
         raise ValueError(f"{path.name} has no points")
