@@ -188,11 +188,14 @@ def make_contact_film(
     state = FilmState(
         pressure=numpy.where(in_first, pressure, 0.0), void=numpy.zeros(mesh.cells), eccentricity=displacement
     )
-    thickening = _thickening(dry, spin, viscosity, problem.thickness(state)[in_first])
+    gap = problem.thickness(state)
+    thickening = _thickening(dry, spin, viscosity, gap[in_first])
     film = float(dry.edge.inlet_film(thickening * viscosity, numpy.asarray(speed)))
+    # from the dry contact to this mean film; no film is below a third of it
+    lift = max(film - float(gap[in_first].mean()), film / 3 - float(gap.min()))
     return ContactFilm(
         problem=problem,
-        start=_lift(problem, state, dry.axis, in_first, film),
+        start=replace(state, eccentricity=displacement - lift * dry.axis),
         inside=angle < high,
         first_ring=meridians,
         thickening=thickening,
@@ -262,10 +265,3 @@ def _thickening(dry: DryContact, spin: Numbers, viscosity: float, gap: Numbers) 
     while float(dry.edge.inlet_film(ratio * viscosity, speed)) < _THICK * roughness:
         ratio *= _THINNING
     return ratio
-
-
-def _lift(problem: FilmProblem, state: FilmState, axis: Numbers, inside: Numbers, film: float) -> FilmState:
-    """Lift the ball from a dry contact to a mean film in mm; no film is below a third of it."""
-    gap = problem.thickness(state)
-    lift = max(film - float(gap[inside].mean()), film / 3 - float(gap.min()))
-    return replace(state, eccentricity=state.eccentricity - lift * axis)

@@ -220,23 +220,11 @@ def load_curve_of(
     class_limits = spacings[0].classes(widest, radius)
 
     def make_pair(class_index: int, mesh: int) -> SurfacePair:
-        """Mesh both bodies for the contacts of a class, and condense them onto their contact surfaces."""
         limit, thickness = class_limits[class_index], float(joint.liner_thickness)
         coarse = (spacing.coarse(limit, radius, thickness, order) for spacing in spacings)
         change = {FINE: Resolution.halved, COARSEST: Resolution.doubled}.get(mesh)
         socket, ball = coarse if change is None else map(change, coarse)
-        size = mesh_size(joint, cup, socket, ball)
-        check_memory(size, order)
-        report_progress(f"condensing {size.elements} elements, {size.nodes} nodes")
-        bodies = [(*socket_compliance(socket_shape(joint, cup), socket), joint.liner)]
-        if joint.ball is not None:
-            bodies.append((*ball_compliance(float(joint.ball.poisson), ball), joint.ball))
-        surfaces = tuple(  # the ball, too, is pressed on a patch of the socket's radius
-            ContactSurface(angle=angle, order=order, compliance=compliance / (radius * float(material.young)))
-            for angle, compliance, material in bodies
-        )
-        reach = min(_REACH_FACTOR * limit, widest)
-        return SurfacePair(surfaces=surfaces, radius=radius, reach=reach, resolution=socket, ball_resolution=ball)
+        return _make_surface_pair(cup, joint, socket, ball, min(_REACH_FACTOR * limit, widest))
 
     gap = kind(clearance=float(joint.clearance), socket_radius=radius)
     return MeshedLoadCurve(
@@ -265,3 +253,23 @@ def _check_element_size(size: float, joint: Joint, bore: float) -> None:
         require(name, thickness, thickness >= 2 * size, f"a layer must have at least two elements of {size:g} mm")
     allowed = f"the bore of {bore:.4g} mm allows {MIN_ELEMENTS} to {MAX_ELEMENTS} elements"
     require("size", size, bore / MAX_ELEMENTS <= size <= bore / MIN_ELEMENTS, allowed)
+
+
+def _make_surface_pair(
+    cup: Cup, joint: Joint, resolution: Resolution, ball_resolution: Resolution, reach: float
+) -> SurfacePair:
+    """Mesh both bodies up to the angle `reach` (rad) and condense them onto their contact surfaces."""
+    size = mesh_size(joint, cup, resolution, ball_resolution)
+    check_memory(size, resolution.order)
+    report_progress(f"condensing {size.elements} elements, {size.nodes} nodes")
+    R2, order = float(joint.socket_radius), resolution.order  # the ball, too, is pressed on a patch of the radius R2
+    unit_bodies = [(*socket_compliance(socket_shape(joint, cup), resolution), joint.liner)]
+    if joint.ball is not None:
+        unit_bodies.append((*ball_compliance(float(joint.ball.poisson), ball_resolution), joint.ball))
+    surfaces = [
+        ContactSurface(angle=angle, order=order, compliance=compliance / (R2 * float(material.young)))
+        for angle, compliance, material in unit_bodies
+    ]
+    return SurfacePair(
+        surfaces=tuple(surfaces), radius=R2, reach=reach, resolution=resolution, ball_resolution=ball_resolution
+    )

@@ -337,7 +337,12 @@ def _press_loads(
         stiffness_matrix=search.solve_sensitivity(fixed, share, search.TANGENT_ITERATIONS, edge_compliance).tangent,
         pressure=fields,
     )
-    return _mask_unconverged(contacts)
+    masked = {}  # the numbers of loads that did not converge are NaN
+    for name, values in contacts._asdict().items():
+        if name not in ("converged", "error", "edge_loaded"):
+            converged = contacts.converged.reshape(-1, *(1 for _ in values.shape[1:]))
+            masked[name] = xp.where(converged, values, xp.nan)
+    return contacts._replace(**masked)
 
 
 def _initial_displacement(bore: BoreArrays, axes: Array, force: Array, clearance: Array, depth: Array) -> Array:
@@ -348,18 +353,6 @@ def _initial_displacement(bore: BoreArrays, axes: Array, force: Array, clearance
     positive = xp.maximum(clearance, 0.0)
     indentation = linear_indentation(xp.sqrt(bore.scale), positive, modulus, force)
     return axes.T * (positive + xp.max(xp.maximum(depth, 0.0)) + indentation)
-
-
-def _mask_unconverged(contacts: JaxContacts) -> JaxContacts:
-    """Set the numbers of loads that did not converge to NaN."""
-    import jax.numpy as xp
-
-    def mask(values: Array) -> Array:
-        converged = contacts.converged.reshape(-1, *(1 for _ in values.shape[1:]))
-        return xp.where(converged, values, xp.nan)
-
-    kept = ("converged", "error", "edge_loaded")
-    return contacts._replace(**{name: mask(values) for name, values in contacts._asdict().items() if name not in kept})
 
 
 def _measure_outline(bores: _Bores, contact: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:

@@ -186,9 +186,14 @@ def orient(
             check_number(name, value)
     single = model.direction.ndim == 1
     require("directions of the model", model.direction.size // 3, single, "give one direction of the load")
-    axes = [
-        _check_angles(name, values) for name, values in (("inclination", inclination), ("anteversion", anteversion))
-    ]
+    axes = []
+    for name, values in (("inclination", inclination), ("anteversion", anteversion)):
+        angles = numpy.atleast_1d(arrays.to_numpy(CUP[name].check(values)).astype(float))
+        if angles.ndim != 1 or angles.size == 0:
+            raise ValueError(f"{name} of shape {angles.shape} is not allowed: give a row of angles")
+        rising = bool((numpy.diff(angles) > 0).all())
+        require(f"{name} from {angles[0]:.4g} to", angles[-1], rising, "angles (rad) rise from one to the next")
+        axes.append(angles)
     start, contacts = perf_counter(), []
     named_load: dict[str, Any] = {**load}
     for number, angle in enumerate(axes[0]):
@@ -207,12 +212,3 @@ def orient(
         seconds=perf_counter() - start,
         **fields,
     )
-
-
-def _check_angles(name: str, values: Array) -> Numbers:
-    angles = numpy.atleast_1d(arrays.to_numpy(CUP[name].check(values)).astype(float))
-    if angles.ndim != 1 or angles.size == 0:
-        raise ValueError(f"{name} of shape {angles.shape} is not allowed: give a row of angles")
-    rising = bool((numpy.diff(angles) > 0).all())
-    require(f"{name} from {angles[0]:.4g} to", angles[-1], rising, "angles (rad) rise from one to the next")
-    return angles
