@@ -116,13 +116,19 @@ def _material_checks(
     strengths = {_PRESSURE: None, _VON_MISES: None, **material.strengths}
     for name, capacity in strengths.items():
         is_pressure, title = name == _PRESSURE, STRENGTH[name].title
+        parts = map(str.strip, material.source.split(";"))  # a material names the sources of its limits one by one
+        source = next((text for text in parts if text.startswith(title.split()[0])), "value of the input")
+        if capacity is None:
+            source = f"no {title} of the {part} is known"
+        elif material.name:
+            source = f"{material.name}, {source}"
         yield Check(
             title=f"{'pressure on' if is_pressure else 'von Mises stress in'} the {part}",
             quantity="max_pressure" if is_pressure else "von_mises",
             demand=pressure if is_pressure else stress,
             capacity=None if capacity is None else float(capacity),
             limit=title,
-            source=f"no {title} of the {part} is known" if capacity is None else _source_of(material, title),
+            source=source,
             trusted=trusted,
             part=part,
         )
@@ -145,13 +151,6 @@ def _yield_checks(contact: Any) -> Iterator[Check]:
             source=origin,
             trusted=bool(contact.valid),
         )
-
-
-def _source_of(material: Material, title: str) -> str:
-    """Return the source of one limit of a material: its part of the sources, else its name alone."""
-    parts = (part.strip() for part in material.source.split(";"))
-    source = next((part for part in parts if part.startswith(title.split()[0])), "value of the input")
-    return f"{material.name}, {source}" if material.name else source
 
 
 def verdict_of(rows: Sequence[Check]) -> tuple[Verdict, str]:

@@ -192,7 +192,7 @@ test_impossible_landmarks_are_refused_in_a_sentence = refused_calls(
         ("a.mrk.json", scans.markups(NAMES, POINTS, unit="inch"), "coordinateUnits = 'inch' is not allowed"),
         ("a.mrk.json", scans.markups(NAMES, POINTS, scale=np.inf), "is not allowed: coordinates are finite"),
         ("a.mrk.json", scans.markups(NAMES, POINTS).replace("[-125.0", "[1.0, -125.0", 1), "three coordinates, got 4"),
-        ("a.mrk.json", "x" * 10_000_001, "a landmark file has at most 10 MB"),
+        ("a.mrk.json", "x" * 10_000_001, "has more than 10 MB, the most that is read"),
     ],
 )
 def test_damaged_files_are_refused_with_their_name(tmp_path, name, text, message):

@@ -103,7 +103,13 @@ class ForceElementInputs(FileTable, frozen=True, kw_only=True):
 
         Raises ValueError: the model has no force law, or a value is not allowed.
         """
-        friction = self._friction()
+        friction: Friction | Bristles | None = None
+        if self.friction is None and self.bristle_stiffness is not None:
+            raise ValueError("--bristle-stiffness is that of friction: add --friction")
+        if self.friction is not None:
+            friction = Friction(coefficient=float(self.friction))
+        if self.friction is not None and self.bristle_stiffness is not None:
+            friction = Bristles(coefficient=float(self.friction), stiffness=float(self.bristle_stiffness))
         if file.joint.clearance < 0:
             return self._preloaded_element(file, name, friction)
         default = default_model(file.joint, {}) if gap is None else reference
@@ -142,15 +148,6 @@ class ForceElementInputs(FileTable, frozen=True, kw_only=True):
         if error > _NOTED_ERROR:
             print_message(f"the tabulated forces differ from the solver's by up to about {100 * error:.2g} %")
         return element
-
-    def _friction(self) -> Friction | Bristles | None:
-        if self.friction is None and self.bristle_stiffness is not None:
-            raise ValueError("--bristle-stiffness is that of friction: add --friction")
-        if self.friction is None:
-            return None
-        if self.bristle_stiffness is None:
-            return Friction(coefficient=float(self.friction))
-        return Bristles(coefficient=float(self.friction), stiffness=float(self.bristle_stiffness))
 
     def _lubricant(self) -> Lubricant | None:
         if self.viscosity is None:

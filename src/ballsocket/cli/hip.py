@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
@@ -152,7 +152,14 @@ def _uncertainty_bands(hip_file: HipFile, history: History, engine: Engine) -> B
 
 def _echo_runs(runs: Sequence[HipRun], files: Sequence[Path]) -> None:
     """Print simulations as JSON: the result of one file, or `results` with an entry for each of several files."""
-    answers = [{"name": run.name, **_summarize_run(run)} for run in runs]
+    answers = []
+    for run in runs:
+        history, bands = run.history, run.bands
+        answer = {"name": run.name, "valid": history.valid and (bands is None or bands.valid), **history.summary()}
+        if bands is not None:
+            answer |= bands.summary()
+            answer["notes"] = [*answer["notes"], *bands.notes]
+        answers.append(answer)
     if len(answers) == 1:
         echo_json(answers[0])
         return
@@ -160,15 +167,6 @@ def _echo_runs(runs: Sequence[HipRun], files: Sequence[Path]) -> None:
     notes = [f"{run.name}: {note}" for run, answer in zip(runs, answers, strict=True) for note in answer["notes"]]
     valid = all(answer["valid"] for answer in answers)
     echo_json({"valid": valid, "results": results, "notes": notes})
-
-
-def _summarize_run(run: HipRun) -> dict[str, Any]:
-    history, bands = run.history, run.bands
-    answer = {"valid": history.valid and (bands is None or bands.valid), **history.summary()}
-    if bands is not None:
-        answer |= bands.summary()
-        answer["notes"] = [*answer["notes"], *bands.notes]
-    return answer
 
 
 def _simulate_cohort(

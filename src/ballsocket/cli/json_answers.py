@@ -88,25 +88,21 @@ def _sources(part: Any) -> Iterator[Source]:
     """Yield the publications of the models and presets in a part of an answer, and those that it cites."""
     if isinstance(part, dict):
         for key, value in part.items():
-            yield from _entry_sources(key, value)
+            if key == "model" and isinstance(value, str) and value in listed_models:
+                yield from listed_models[value].sources
+            elif key == "name" and isinstance(value, str):
+                presets: Iterable[Joint | Material] = (*joints.values(), *materials.values())
+                named = (preset for preset in presets if preset.name == value)
+                yield from (Source(cited) for preset in named for cited in find_cited_keys(preset.source))
+            elif key == "source" and isinstance(value, str):
+                yield from map(Source, find_cited_keys(value))
+            elif key == "sources" and isinstance(value, list):
+                cited_keys = (source["key"] if isinstance(source, dict) else source for source in value)
+                yield from (Source(cited) for cited in cited_keys if cited in bibliography())
             yield from _sources(value)
     elif isinstance(part, list):
         for element in part:
             yield from _sources(element)
-
-
-def _entry_sources(key: str, value: Any) -> Iterator[Source]:
-    if key == "model" and isinstance(value, str) and value in listed_models:
-        yield from listed_models[value].sources
-    elif key == "name" and isinstance(value, str):
-        presets: Iterable[Joint | Material] = (*joints.values(), *materials.values())
-        named = (preset for preset in presets if preset.name == value)
-        yield from (Source(cited) for preset in named for cited in find_cited_keys(preset.source))
-    elif key == "source" and isinstance(value, str):
-        yield from map(Source, find_cited_keys(value))
-    elif key == "sources" and isinstance(value, list):
-        cited_keys = (source["key"] if isinstance(source, dict) else source for source in value)
-        yield from (Source(cited) for cited in cited_keys if cited in bibliography())
 
 
 Step = tuple[Sequence[str], str]  # words of a command that is useful after an answer, and the reason

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
 from math import pi
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy
 import typer
 
-from ..comparison import Comparison, successful_contacts
+from ..comparison import successful_contacts
 from ..contact import Contact, Model
 from ..contact.verdict import error_bar
 from ..core.arrays import Numbers, to_list
@@ -266,16 +266,12 @@ def press(
         for pressed in joints:
             print_press(pressed.answer.comparison, pressed.remarks, units)
     for pressed in joints:
-        _exit_on_failure(pressed.answer.comparison, pressed.answer.models)
-
-
-def _exit_on_failure(comparison: Comparison, models: Iterable[str]) -> None:
-    """Exit with a message and a status if there is no result or no convergence."""
-    unconverged = [name for name, contact in comparison.items() if contact.status == Status.NOT_CONVERGED]
-    if unconverged:
-        fail(f"no convergence of {', '.join(unconverged)} (see the notes)")
-    if not set(successful_contacts(comparison)) & set(models):
-        fail(f"no answer from {', '.join(models)} (see the notes)")
+        comparison, requested = pressed.answer.comparison, pressed.answer.models
+        unconverged = [name for name, contact in comparison.items() if contact.status == Status.NOT_CONVERGED]
+        if unconverged:
+            fail(f"no convergence of {', '.join(unconverged)} (see the notes)")
+        if not set(successful_contacts(comparison)) & set(requested):
+            fail(f"no answer from {', '.join(requested)} (see the notes)")
 
 
 @app.command()

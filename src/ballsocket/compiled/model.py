@@ -74,16 +74,17 @@ class Compiled(ModelWrapper):
         check_joint(joint)
         kind, load = select_and_check_load(force=force, indentation=indentation, half_angle=half_angle)
         load = broadcast_load(load, joint.strengths())
-        if kind == "force" and isinstance(self.model, RadialFoundation) and self._is_compilable(joint, load):
+        large = [number for number in (*joint.numbers(), load) if not arrays.is_plain_number(number)]
+        if (
+            kind == "force"
+            and isinstance(self.model, RadialFoundation)
+            and not isinstance(self.model.modulus, FunctionModulus)
+            and large
+            and all(map(_is_float64, large))
+            and all(map(arrays.is_plain_number, self.parameters))
+        ):
             return self._solve_forces(self.model, joint, load)
         return super().press(joint, force=force, indentation=indentation, half_angle=half_angle)
-
-    def _is_compilable(self, joint: Joint, load: Array) -> bool:
-        """Return True if all arrays are float64 and the model's constants are plain numbers."""
-        large = [number for number in (*joint.numbers(), load) if not arrays.is_plain_number(number)]
-        if isinstance(getattr(self.model, "modulus", None), FunctionModulus):
-            return False
-        return bool(large) and all(map(_is_float64, large)) and all(map(arrays.is_plain_number, self.parameters))
 
     def _solve_forces(self, model: RadialFoundation, joint: Joint, force: Array) -> Contact:
         """Solve the contacts of a radial foundation for forces in one compiled loop."""

@@ -277,16 +277,11 @@ def _float_joint(model: Model, joint: Joint) -> Joint | None:
     return float_joint
 
 
-def _declared_attribute_names(base: type) -> set[str]:
-    """Collect the names of all public properties and class variables of a class and its bases."""
-    names = {name for cls in base.__mro__ for name in vars(cls).get("__annotations__", {})}
-    return names | {name for cls in base.__mro__ for name, value in vars(cls).items() if isinstance(value, property)}
-
+_DECLARED = {name for base in Model.__mro__ for name in vars(base).get("__annotations__", {})}
+_DECLARED |= {name for base in Model.__mro__ for name, value in vars(base).items() if isinstance(value, property)}
 
 _Delegation: Any = type(
-    "_Delegation",
-    (),
-    {name: property(attrgetter(f"model.{name}")) for name in _declared_attribute_names(Model) - {"off_axis"}},
+    "_Delegation", (), {name: property(attrgetter(f"model.{name}")) for name in _DECLARED - {"off_axis"}}
 )
 """Class whose properties read every declared attribute of a model from `self.model`."""
 

@@ -32,8 +32,9 @@ def increasing_root(
     The law is an increasing function x, *arguments -> (value, slope), both of the shape of x. Each element has its own
     bracket low <= start <= high; the result is the nearest end of the bracket where there is no root.
 
-    Newton's method with the slope, see `bracketed_newton_step`, stops after `steps` evaluations, or once no element
-    moves by more than `tolerance` times its value. The error is then of the order of the squared tolerance. Inside
+    Newton's method with the slope stops after `steps` evaluations, or once no element moves by more than `tolerance`
+    times its value. The error is then of the order of the squared tolerance. A step out of the bracket is replaced by
+    the middle of the bracket, or by its upper end while that is `fresh`, that is, not yet evaluated. Inside
     `jax.jit` it is a `lax.while_loop`, or unrolled steps if `steps` is small; inside `torch.compile` and `vmap` of
     PyTorch it takes all steps. Automatic differentiation gives the derivatives of the root, see `implicit_root`.
     """
@@ -41,7 +42,18 @@ def increasing_root(
         return scalar_increasing_root(law, target, low, high, start, arguments, steps, tolerance)
 
     def newton_step(state: tuple[Array, ...]) -> tuple[Array, ...]:
-        return bracketed_newton_step(law, target, arguments, tolerance, *state[:-1])
+        """Step to the next x, and narrow the bracket; the last item is the mask of the elements that still move."""
+        x, low, high, fresh, _ = state
+        value, slope = law(x, *arguments)
+        difference = value - target
+        low = where(difference <= 0, x, low)
+        high = where(difference >= 0, x, high)
+        fresh = fresh & (x < high)
+        newton_x = x - difference / safe_divisor(slope)
+        newton_in_bracket = (slope > 0) & (newton_x >= low) & (newton_x <= high)
+        fallback_x = where(fresh & (newton_x > high), high, low + (high - low) / 2)
+        next_x = where(newton_in_bracket, newton_x, fallback_x)
+        return next_x, low, high, fresh, abs(next_x - x) > tolerance * abs(next_x)
 
     def solve(first: Array) -> Array:
         return _iterate_until_converged(newton_step, (first, low, high, first < high, first == first), steps)
@@ -124,34 +136,6 @@ def scalar_increasing_root(
         if step_size <= tolerance * abs(x):
             break
     return x
-
-
-def bracketed_newton_step(
-    law: Increasing,
-    target: Array,
-    arguments: tuple[Any, ...],
-    tolerance: float,
-    x: Array,
-    low: Array,
-    high: Array,
-    fresh: Array,
-) -> tuple[Array, Array, Array, Array, Array]:
-    """Compute one Newton step of x towards law(x) = target within a bracket, and narrow the bracket.
-
-    A step out of the bracket is replaced by the middle of the bracket, or by its upper end while that is `fresh`, that
-    is, not yet evaluated. The result is x, low, high, fresh, and the mask of the elements that moved by more than the
-    tolerance.
-    """
-    value, slope = law(x, *arguments)
-    difference = value - target
-    low = where(difference <= 0, x, low)
-    high = where(difference >= 0, x, high)
-    fresh = fresh & (x < high)
-    newton_x = x - difference / safe_divisor(slope)
-    newton_in_bracket = (slope > 0) & (newton_x >= low) & (newton_x <= high)
-    fallback_x = where(fresh & (newton_x > high), high, low + (high - low) / 2)
-    next_x = where(newton_in_bracket, newton_x, fallback_x)
-    return next_x, low, high, fresh, abs(next_x - x) > tolerance * abs(next_x)
 
 
 def _iterate_until_converged(

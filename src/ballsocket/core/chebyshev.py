@@ -108,12 +108,6 @@ def clenshaw_sum(coefficients: Array, x: Array) -> Pair:
     return coefficients[0, ...] + x * value - previous, value + x * slope - previous_slope
 
 
-def multiply_factors(matrix: Array, *factors: Array) -> Array:
-    """Multiply a matrix (rows, products) by the outer product of factors (rows, joints or 1) for each joint."""
-    contracted, products = contract_factors(matrix, *factors)
-    return contracted @ products
-
-
 def contract_factors(matrix: Array, *factors: Array) -> Pair:
     """Multiply a matrix (rows, products) by the factors that all joints share; return it and the other products.
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from difflib import get_close_matches
 from importlib.util import find_spec
 from math import radians
@@ -33,6 +34,15 @@ def require(name: str, value: Array, valid: Array, allowed: str) -> None:
     if valid is True or all_true(valid) is not False:
         return
     raise ValueError(f"{name}{_format_invalid_element(value, valid)} is not allowed: {allowed}")
+
+
+@contextmanager
+def refusals_of(name: str, kinds: tuple[type[Exception], ...] = (ValueError,)) -> Iterator[None]:
+    """Raise the errors of some kinds within the block as ValueError, whose message begins with a name, as of a file."""
+    try:
+        yield
+    except kinds as error:
+        raise ValueError(f"{name}: {error}") from error
 
 
 def first_invalid(value: Array, valid: Array) -> float:

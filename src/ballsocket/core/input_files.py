@@ -75,6 +75,19 @@ def open_input(path: Path) -> BinaryIO:
     return stream
 
 
+def read_input(path: Path, max_bytes: int) -> bytes:
+    """Read an input file of limited size.
+
+    Raises ValueError: a larger file, or one that `open_input` refuses.
+    Raises OSError: the file cannot be read.
+    """
+    with open_input(path) as stream:
+        raw = stream.read(max_bytes + 1)
+    if len(raw) > max_bytes:
+        raise ValueError(f"{path.name} has more than {max_bytes // 1_000_000} MB, the most that is read")
+    return raw
+
+
 class _NamedFile(FileIO):
     """Raw input file whose errors name it: those of a read have no path."""
 

@@ -13,7 +13,7 @@ import numpy
 from .arrays import Numbers
 from .checks import needs
 from .display import counted
-from .input_files import open_input, resolve_input
+from .input_files import read_input, resolve_input
 
 _HEADER_BYTES = 2**16  # number of bytes in which the header of a file ends
 _MAX_BYTES = 200_000_000  # largest size of a mesh file
@@ -32,10 +32,7 @@ def read_mesh_file(path: Path) -> tuple[Numbers, Numbers]:
     import meshio  # slow to import
 
     message = f"{path.name} cannot be read as a mesh: the file is incomplete or its suffix is wrong"
-    with open_input(path) as file:
-        raw = file.read(_MAX_BYTES + 1)
-    if len(raw) > _MAX_BYTES:
-        raise ValueError(f"{path.name} has more than {_MAX_BYTES // 1_000_000} MB, the most that is read")
+    raw = read_input(path, _MAX_BYTES)
     source: Any = resolve_input(path)
     suffix, first_index, n_stated = path.suffix.lower(), 1, None
     if suffix == ".obj":  # meshio takes only as many normals and textures as points: points and faces are enough

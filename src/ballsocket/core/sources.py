@@ -111,21 +111,19 @@ def cite(*used: Any) -> str:
     >>> "10.3390/app112311170" in bs.cite(bs.HessForsbach())
     True
     """
-    return "\n\n".join(dict.fromkeys(entry for item in used for entry in _list_entries(item)))
-
-
-def _list_entries(item: Any) -> list[str]:
-    """List the BibTeX entries of an item; raise TypeError if the item cannot be cited."""
-    if isinstance(item, Source):
-        return [item.entry]
-    if isinstance(item, type) or not any(hasattr(item, mark) for mark in ("sources", "source", "model")):
-        name = getattr(item, "__name__", "")
-        text = f"the class or function {name}; use {name}()" if name and callable(item) else f"{item!r:.60}"
-        raise TypeError(f"models, contacts, comparisons, materials and joints can be cited, not {text}")
-    entries = list(_yield_entries(item))
-    if not entries and hasattr(item, "source"):
-        raise TypeError(f"no known publication is named in the source of {item}: {item.source!r}")
-    return entries
+    cited: list[str] = []
+    for item in used:
+        if not isinstance(item, Source) and (
+            isinstance(item, type) or not any(hasattr(item, mark) for mark in ("sources", "source", "model"))
+        ):
+            name = getattr(item, "__name__", "")
+            text = f"the class or function {name}; use {name}()" if name and callable(item) else f"{item!r:.60}"
+            raise TypeError(f"models, contacts, comparisons, materials and joints can be cited, not {text}")
+        entries = [item.entry] if isinstance(item, Source) else list(_yield_entries(item))
+        if not entries and hasattr(item, "source"):
+            raise TypeError(f"no known publication is named in the source of {item}: {item.source!r}")
+        cited += entries
+    return "\n\n".join(dict.fromkeys(cited))
 
 
 def _yield_entries(item: Any) -> Iterator[str]:

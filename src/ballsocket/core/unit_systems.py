@@ -71,11 +71,6 @@ class Units(StrEnum):
         """Write a length (mm) to 0.1 mm or to 0.001 in."""
         return self.amount(Amount(millimetres, MILLIMETRES, decimals=1))
 
-    @property
-    def length_unit(self) -> Unit:
-        """Unit of dimensions: mm or inches."""
-        return self.written(MILLIMETRES)
-
     def unit_of(self, quantity: Quantity) -> Unit:
         """Return the unit of a quantity."""
         return self.written(quantity.shown)

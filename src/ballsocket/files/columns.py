@@ -14,7 +14,7 @@ from typing import Annotated
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.checks import closest, nearest, needs, shown
+from ..core.checks import closest, nearest, needs, refusals_of, shown
 from ..core.display import counted, plain_number
 from ..core.executors.processes import check_memory
 from ..core.input_files import open_input, resolve_input
@@ -196,11 +196,9 @@ class NumberTable:
 
         Raises ValueError: a missing unit, or the unit of another quantity.
         """
-        try:
+        with refusals_of(self.title):
             heads = [replace(head, unit=head.unit or units.get(head.name, "")) for head in self.heads]
             factors = {head.name: head.factor(kinds[head.name]) for head in heads}
-        except ValueError as error:
-            raise ValueError(f"{self.title}: {error}") from error
         return {head.name: factors[head.name] * values for head, values in self.items()}
 
     def numbers(self, name: str) -> Numbers:
@@ -280,7 +278,7 @@ def read_columns(path: Path, names: Collection[str], choice: HeadChoice = ALL_CO
         The file cannot be read.
     """
     reader = _HeadReader(names, choice)
-    try:
+    with refusals_of(path.name):
         raw = _read_bytes(path)
         if raw.startswith(b"PAR1"):
             return _read_parquet(path, reader)
@@ -290,8 +288,6 @@ def read_columns(path: Path, names: Collection[str], choice: HeadChoice = ALL_CO
         table = _parse_table(path.name, raw, reader)
         reader.check_known(table.heads)
         return table.numbers(table.heads)
-    except ValueError as error:
-        raise ValueError(f"{path.name}: {error}") from error
 
 
 def read_cells(path: Path, names: Collection[str], choice: HeadChoice, texts: Collection[str]) -> CellTable:
@@ -304,10 +300,8 @@ def read_cells(path: Path, names: Collection[str], choice: HeadChoice, texts: Co
     Raises ImportError: an optional extra is not installed.
     Raises OSError: the file cannot be read.
     """
-    try:
+    with refusals_of(path.name):
         return _parse_table(path.name, _read_bytes(path), _HeadReader(names, choice, texts))
-    except ValueError as error:
-        raise ValueError(f"{path.name}: {error}") from error
 
 
 def find_cells(

@@ -51,15 +51,18 @@ def toml_of(file: JointFile) -> str:
 
 
 def _file_table(file: JointFile) -> JointFileTable:
-    joint = file.joint
+    joint, liner = file.joint, file.joint.liner
     if not all(map(is_plain_number, joint.numbers())):
         raise ValueError("a joint file holds one joint, and this one has arrays of numbers")
+    preset = _preset_name(liner)
+    has_own_curve = liner.hardening is not None and (preset is None or materials[preset].hardening != liner.hardening)
+    hardening: dict[str, Any] = {"hardening": HardeningCurve(liner.hardening)} if has_own_curve else {}
     return JointFileTable(
         name=Text(joint.name) if joint.name else None,
         report=file.report if file.report != NO_DETAILS else None,
         source=Text(joint.source) if joint.source else None,
         joint=LengthsTable(**{name: Length(value) for name, value in _lengths(joint).items()}, support=joint.support),
-        liner=_liner(joint.liner),
+        liner=LinerTable(**_material(liner), **hardening),
         ball=None if joint.ball is None else MaterialTable(**_material(joint.ball)),
         backing=[LayerTable(thickness=Length(layer.thickness), **_material(layer.material)) for layer in joint.backing]
         or None,
@@ -117,11 +120,3 @@ def _preset_name(material: Material) -> str | None:
         if preset.name == material.name and has_all:
             return key
     return None
-
-
-def _liner(liner: Material) -> LinerTable:
-    """Return the table of a liner, with its hardening unless that is its preset's."""
-    key, hardening = _preset_name(liner), liner.hardening
-    if hardening is None or (key is not None and materials[key].hardening == hardening):
-        return LinerTable(**_material(liner))
-    return LinerTable(**_material(liner), hardening=HardeningCurve(hardening))

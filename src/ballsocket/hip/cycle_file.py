@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.checks import check_names, known_name, require, shown
+from ..core.checks import check_names, known_name, refusals_of, require, shown
 from ..core.display import plain_number
 from ..files.columns import ALL_COLUMNS, HeadChoice
 from ..problem.cup import Side
@@ -123,7 +123,7 @@ def read_cycle(
     if not paths:
         raise ValueError("no table is named")
     tables = [read_table(file, options.heads) for file in paths]
-    try:
+    with refusals_of(", ".join(file.name for file in paths)):
         hips = [
             opensim_columns(table, options.side) if table.is_opensim else text_columns(table, body_weight)
             for table in tables
@@ -132,8 +132,6 @@ def read_cycle(
         remark = "; ".join(table.remark() for table in tables if table.remark())
         cycle = _table_cycle(combine_columns(parts), order, options)
         return replace(cycle, name=paths[0].stem, n_steps=n_steps, remark=remark)
-    except ValueError as error:
-        raise ValueError(f"{', '.join(file.name for file in paths)}: {error}") from error
 
 
 def _table_cycle(table: HipColumns, order: str, options: TableOptions) -> Cycle:

@@ -13,7 +13,7 @@ from typing import Any
 import numpy
 
 from ..core.arrays import Numbers, owned
-from ..core.checks import check_text, known_name, require, shown
+from ..core.checks import check_text, known_name, refusals_of, require, shown
 from ..core.display import counted
 from ..files.cells import Cell, count_factor, count_words
 from ..files.columns import CellTable, HeadChoice, read_cells
@@ -43,10 +43,8 @@ def read_stations(path: Path, quantity: str, unit: str | None, choice: HeadChoic
     Raises ValueError: a column is missing, unknown or without a unit, or a cell is not a number.
     """
     table = read_cells(path, (*_CYCLES, quantity), choice, texts=(_STATION,))
-    try:
+    with refusals_of(table.title):
         return _parse_readings(table, quantity, unit)
-    except ValueError as error:
-        raise ValueError(f"{table.title}: {error}") from error
 
 
 def _parse_readings(table: CellTable, quantity: str, unit: str | None) -> StationReadings:

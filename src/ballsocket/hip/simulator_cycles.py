@@ -196,23 +196,23 @@ def rocking(
         Largest force in N. The force is a sine between a tenth of the peak and the peak.
     """
     parse_rotation_order(order)
+
+    def angles(phases: Numbers) -> Numbers:
+        """Convert rotations by the amplitude about horizontal axes at an azimuth into angles about x, y and z."""
+        # R = cos γ 1 + (1 - cos γ) a aᵀ + sin γ [a], a = (cos ψ, sin ψ, 0); R02, R12, R22, R01, R00 of Rx Ry Rz
+        c, s = numpy.cos(2 * pi * phases), numpy.sin(2 * pi * phases)
+        sine, versine = numpy.sin(amplitude), 1 - numpy.cos(amplitude)
+        adduction = numpy.arcsin(sine * s)
+        flexion = numpy.arctan2(sine * c, numpy.cos(amplitude) + 0 * c)
+        rotation = numpy.arctan2(-versine * c * s, 1 - versine * s * s)
+        return numpy.stack([flexion, adduction, rotation])
+
     return Cycle(
         name="biaxial-rocking",
         force=lambda phases: peak * (0.55 - 0.45 * numpy.cos(2 * pi * phases)),
-        angles=lambda phases: _tilted_axis_angles(amplitude, 2 * pi * phases),
+        angles=angles,
         n_steps=n_steps,
     )
-
-
-def _tilted_axis_angles(tilt: float, azimuth: Numbers) -> Numbers:
-    """Convert rotations by a tilt about horizontal axes at an azimuth into angles about x, y and z."""
-    # R = cos γ 1 + (1 - cos γ) a aᵀ + sin γ [a], a = (cos ψ, sin ψ, 0); R02, R12, R22, R01, R00 of Rx Ry Rz
-    c, s = numpy.cos(azimuth), numpy.sin(azimuth)
-    sine, versine = numpy.sin(tilt), 1 - numpy.cos(tilt)
-    adduction = numpy.arcsin(sine * s)
-    flexion = numpy.arctan2(sine * c, numpy.cos(tilt) + 0 * c)
-    rotation = numpy.arctan2(-versine * c * s, 1 - versine * s * s)
-    return numpy.stack([flexion, adduction, rotation])
 
 
 def constant_load(

@@ -157,12 +157,15 @@ def make_contact_film(
         growth=settings.growth,
         last_edge=high,
     )
-    meridians = _meridians(dry, viscosity, dry.speed(spin), settings.meridians)
+    speed = dry.speed(spin)
+    sides = dry.edge.side_speed(viscosity, speed, dry.contact_radius) / speed  # several cells lie in the sides
+    meridians = min(max(settings.meridians, 8 * ceil(_CELLS_OF_SIDES / sides / 8)), _MAX_MERIDIANS)
     grid, frame = Grid(edges=rings, meridians=meridians), frame_about(dry.axis)
     mesh = polar_mesh(dry.radius, rings, meridians)
-    if isinstance(contact, OffAxisContact):
+    in_bore = numpy.ones(mesh.cells, dtype=bool)
+    if isinstance(contact, OffAxisContact):  # where the rim cuts the mesh, the film ends
         mesh = mesh.in_frame(frame)
-    in_bore = _bore_mask(contact, mesh)
+        in_bore = numpy.asarray(mesh.direction[:, 2] > numpy.cos(float(contact.model.reach_of(contact.joint))))
     compliance, softness = _yielding(contact, dry, grid, frame, in_bore)
     mesh = mesh if in_bore.all() else mesh.within(in_bore)
     angle = numpy.arccos(numpy.clip(mesh.direction @ dry.axis, -1.0, 1.0))
@@ -185,11 +188,14 @@ def make_contact_film(
     state = FilmState(
         pressure=numpy.where(in_first, pressure, 0.0), void=numpy.zeros(mesh.cells), eccentricity=displacement
     )
-    thickening = _thickening(dry, spin, viscosity, problem.thickness(state)[in_first])
-    film = float(dry.edge.inlet_film(thickening * viscosity, numpy.asarray(dry.speed(spin))))
+    gap = problem.thickness(state)
+    thickening = _thickening(dry, spin, viscosity, gap[in_first])
+    film = float(dry.edge.inlet_film(thickening * viscosity, numpy.asarray(speed)))
+    # from the dry contact to this mean film; no film is below a third of it
+    lift = max(film - float(gap[in_first].mean()), film / 3 - float(gap.min()))
     return ContactFilm(
         problem=problem,
-        start=_lift(problem, state, dry.axis, in_first, film),
+        start=replace(state, eccentricity=displacement - lift * dry.axis),
         inside=angle < high,
         first_ring=meridians,
         thickening=thickening,
@@ -224,13 +230,6 @@ def _edge_bounds(contact: Contact) -> tuple[float, float]:
     return float(angles.min()), float(angles.max())
 
 
-def _bore_mask(contact: Contact, mesh: FilmMesh) -> Numbers:
-    """Return the mask of the cells within the bore (cells,): where the rim cuts the mesh, the film ends."""
-    if not isinstance(contact, OffAxisContact):
-        return numpy.ones(mesh.cells, dtype=bool)
-    return numpy.asarray(mesh.direction[:, 2] > numpy.cos(float(contact.model.reach_of(contact.joint))))
-
-
 def _yielding(
     contact: Contact, dry: DryContact, grid: Grid, frame: Numbers, in_bore: Numbers
 ) -> tuple[float, ElasticSoftness | None]:
@@ -260,22 +259,9 @@ def _gap(contact: Contact, mesh: FilmMesh, displacement: Numbers) -> Numbers:
     return numpy.asarray(reach - shape.displacement(angle, length - clearance) + depth)
 
 
-def _meridians(dry: DryContact, viscosity: float, speed: float, least: int) -> int:
-    """Choose the number of cells in a ring so that several lie in the sides of an elastic contact."""
-    share = dry.edge.side_speed(viscosity, speed, dry.contact_radius) / speed
-    return min(max(least, 8 * ceil(_CELLS_OF_SIDES / share / 8)), _MAX_MERIDIANS)
-
-
 def _thickening(dry: DryContact, spin: Numbers, viscosity: float, gap: Numbers) -> float:
     """Choose the first viscosity, relative to that of the lubricant, for a dry contact with an uneven gap in mm."""
     roughness, speed, ratio = float(gap.mean() - gap.min()), numpy.asarray(dry.speed(spin)), 1.0
     while float(dry.edge.inlet_film(ratio * viscosity, speed)) < _THICK * roughness:
         ratio *= _THINNING
     return ratio
-
-
-def _lift(problem: FilmProblem, state: FilmState, axis: Numbers, inside: Numbers, film: float) -> FilmState:
-    """Lift the ball from a dry contact to a mean film in mm; no film is below a third of it."""
-    gap = problem.thickness(state)
-    lift = max(film - float(gap[inside].mean()), film / 3 - float(gap.min()))
-    return replace(state, eccentricity=state.eccentricity - lift * axis)

@@ -185,7 +185,8 @@ def _newton_step(
     pressure_change = choice.pressure_at + choice.pressure_by * unknown
     void_change = choice.void_at + choice.void_by * unknown
     film_change = problem.displacement(pressure_change) - problem.mesh.direction @ shift
-    length = _step_length(thickness, film_change)
+    thin = film_change < -_LARGEST_FALL * thickness  # a whole step would take most of the film of these cells
+    length = float((_LARGEST_FALL * thickness[thin] / -film_change[thin]).min(initial=1.0))
     later = replace(
         state,
         pressure=numpy.maximum(state.pressure + length * pressure_change, 0.0),
@@ -195,11 +196,3 @@ def _newton_step(
     change = float(numpy.abs(later.pressure - state.pressure).max()) / max(float(later.pressure.max()), 1e-9)
     change += float(numpy.abs(later.void - state.void).max())
     return later, change / length
-
-
-def _step_length(thickness: Numbers, film_change: Numbers) -> float:
-    """Choose the factor of a Newton step so that no cell loses most of its film."""
-    thin = film_change < -_LARGEST_FALL * thickness
-    if not thin.any():
-        return 1.0
-    return float((_LARGEST_FALL * thickness[thin] / -film_change[thin]).min())

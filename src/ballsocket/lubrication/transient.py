@@ -224,10 +224,13 @@ def film_over_steps(
         LoadStep(force=force * axis, spin=spin, duration=float(duration))
         for force, spin, duration in zip(loads, rates, numpy.broadcast_to(times, loads.shape), strict=True)
     ]
+    forces, numbers = numpy.unique(loads, return_inverse=True)
+    angles = numpy.array([float(_press(model, joint, force).half_angle) for force in forces])[numbers]
+    shifts = float(joint.socket_radius) * numpy.abs(angles - numpy.roll(angles, 1))  # of the edge in mm, at each load
     return FilmSteps(
         case=case,
         film=solve_cycle(case.problem, case.start, steps, cycles, parts),
-        edge_travel=_edge_shifts(model, joint, loads) / parts / shortest_inlet(dry_contacts, fastest, viscosity),
+        edge_travel=shifts / parts / shortest_inlet(dry_contacts, fastest, viscosity),
     )
 
 
@@ -235,13 +238,6 @@ def _finite(name: str, values: Array) -> Numbers:
     array = numpy.asarray(check_numeric(name, values), dtype=float)
     require(name, array, numpy.isfinite(array), "a number is finite")
     return array
-
-
-def _edge_shifts(model: Model, joint: Joint, loads: Numbers) -> Numbers:
-    """Compute the movement (steps,) of the edge in mm from the load before to each load in N; the last is first."""
-    forces, numbers = numpy.unique(loads, return_inverse=True)
-    angles = numpy.array([float(_press(model, joint, force).half_angle) for force in forces])[numbers]
-    return numpy.asarray(float(joint.socket_radius) * numpy.abs(angles - numpy.roll(angles, 1)))
 
 
 def _press(model: Model, joint: Joint, force: float) -> Contact:

@@ -200,18 +200,13 @@ class FilmWave:
         pressed = numpy.bincount(first, out, count) + numpy.bincount(second, back, count)
         return carried * self._inverse_area, 3 * pressed * self._inverse_area
 
-    def _stable_step(self, film: Numbers) -> float:
-        """Compute the largest time step in s in which only a part of the film of any cell leaves it, at f'(h)."""
-        carried, pressed = self._leaving
-        fastest = float((carried + pressed * film**2).max())
-        return _COURANT / fastest if fastest > 0 else numpy.inf
-
     def advance(self, film: Numbers, duration: float) -> Numbers:
         """Carry a film (cells,) in mm over a time in s by Heun's method; return its thickness in mm."""
-        flood = self._flood
+        flood, (carried, pressed) = self._flood, self._leaving
         time, inner = 0.0, numpy.append(film[self._cells], flood)
         while time < duration and len(inner) > 1:
-            step = min(self._stable_step(inner), duration - time)
+            fastest = float((carried + pressed * inner**2).max())  # only a part of a film leaves in a step, at f'(h)
+            step = min(_COURANT / fastest if fastest > 0 else numpy.inf, duration - time)
             growth = self._growth(inner)
             predicted = numpy.minimum(numpy.maximum(inner + step * growth, 0.0), flood)
             growth += self._growth(predicted)

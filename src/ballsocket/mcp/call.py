@@ -153,7 +153,11 @@ async def run(arguments: Sequence[str], folder: Path, longest: float) -> CallRes
         except TimeoutError:
             return CallResult(None, f"stopped after {longest:g} s, the time limit of a call here{_RESUME}")
         finally:
-            _kill(process)
+            with suppress(OSError):
+                if hasattr(os, "killpg"):
+                    os.killpg(process.pid, signal.SIGKILL)
+                elif process.returncode is None:
+                    process.kill()
             await process.wait()
     lines = err.decode("utf-8", errors="replace").splitlines()
     messages = [line.removeprefix("ballsocket: ") for line in lines if line.startswith("ballsocket: ")]
@@ -175,14 +179,6 @@ def _lifeline() -> Iterator[int]:
     finally:
         os.close(writing)
         os.close(reading)
-
-
-def _kill(process: asyncio.subprocess.Process) -> None:
-    with suppress(OSError):
-        if hasattr(os, "killpg"):
-            os.killpg(process.pid, signal.SIGKILL)
-        elif process.returncode is None:
-            process.kill()
 
 
 @dataclass(frozen=True)

@@ -14,9 +14,9 @@ from typing import Any
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.checks import shown
+from ..core.checks import refusals_of, shown
 from ..core.display import counted
-from ..core.input_files import open_input
+from ..core.input_files import read_input
 from ..core.records import Input
 from ..files.cells import decode_text
 from ..problem.cup import Side
@@ -142,7 +142,17 @@ def read_landmarks(
     """
     if coordinates is not None and coordinates.upper() not in _SIGNS:
         raise ValueError(f"coordinates = {shown(coordinates)} is not allowed: RAS or LPS")
-    named = [point for path in paths for point in _read_file(Path(path), coordinates and coordinates.upper())]
+    named: list[tuple[str, Numbers]] = []
+    for path in map(Path, paths):
+        read = _READERS.get("".join(path.suffixes[-2:]).lower()) or _READERS.get(path.suffix.lower())
+        if read is None:
+            raise ValueError(f"{path.name}: landmarks are read from .fcsv and .mrk.json files of 3D Slicer")
+        raw = read_input(path, _MAX_FILE_SIZE)
+        with refusals_of(path.name, (ValueError, csv.Error)):
+            points = list(read(decode_text(raw), coordinates and coordinates.upper()))
+        if not points:
+            raise ValueError(f"{path.name} has no points")
+        named += points
     if len(named) > _MAX_POINTS:
         raise ValueError(f"{len(named)} landmarks: at most {_MAX_POINTS} are read")
     names = [name for name, _ in named]
@@ -162,23 +172,6 @@ def _list(names: list[str] | tuple[str, ...]) -> str:
 def missing_landmarks(landmarks: Landmarks, needed: str) -> ValueError:
     """Create the error for landmarks that do not exist, with the names of those that do."""
     return ValueError(f"the landmarks lack {needed}; the points are {_list(landmarks.names)}")
-
-
-def _read_file(path: Path, coordinates: str | None) -> list[tuple[str, Numbers]]:
-    reader = _READERS.get("".join(path.suffixes[-2:]).lower()) or _READERS.get(path.suffix.lower())
-    if reader is None:
-        raise ValueError(f"{path.name}: landmarks are read from .fcsv and .mrk.json files of 3D Slicer")
-    with open_input(path) as stream:
-        raw = stream.read(_MAX_FILE_SIZE + 1)
-    if len(raw) > _MAX_FILE_SIZE:
-        raise ValueError(f"{path.name}: a landmark file has at most {_MAX_FILE_SIZE // 1_000_000} MB")
-    try:
-        points = list(reader(decode_text(raw), coordinates))
-    except (ValueError, csv.Error) as error:
-        raise ValueError(f"{path.name}: {error}") from error
-    if not points:
-        raise ValueError(f"{path.name} has no points")
-    return points
 
 
 def _signs(stated: Any, coordinates: str | None) -> Numbers:

@@ -12,9 +12,9 @@ from typing import BinaryIO
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.checks import shown
+from ..core.checks import refusals_of, shown
 from ..core.display import counted
-from ..core.input_files import open_input
+from ..core.input_files import open_input, read_input
 from ..core.mesh_files import read_mesh_file
 from ..core.records import Input
 from ..files.cells import NumberedRow, decode_text, is_data, split_text
@@ -265,11 +265,8 @@ def read_points(path: str | Path, *, units: str = "mm") -> PointCloud:
 
 def _read_text(path: Path, units: str) -> tuple[Numbers, tuple[str, ...]]:
     """Return the points (n, 3) of a text, and notes on columns that are not read."""
-    with open_input(path) as file:
-        raw = file.read(_MAX_BYTES + 1)
-    if len(raw) > _MAX_BYTES:
-        raise ValueError(f"{path.name} has more than {_MAX_BYTES // 1_000_000} MB, the most that is read")
-    try:
+    raw = read_input(path, _MAX_BYTES)
+    with refusals_of(path.name):
         lines = ["" if line.startswith(_COMMENTS) else line for line in map(str.strip, decode_text(raw).split("\n"))]
         first = next((number for number, line in enumerate(lines) if line), None)
         if first is None:
@@ -284,8 +281,6 @@ def _read_text(path: Path, units: str) -> tuple[Numbers, tuple[str, ...]]:
                 f"its first line states {counted(int(n_stated), 'point')}, and it has {len(points)}: save it again"
             )
         return points, notes
-    except ValueError as error:
-        raise ValueError(f"{path.name}: {error}") from error
 
 
 def _without_heads(tables: Sequence[tuple[str, list[NumberedRow]]]) -> list[tuple[str, list[NumberedRow]]]:

@@ -10,7 +10,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import needs
-from ..core.kinds import NEWTONS
+from ..core.kinds import MILLIMETRES, NEWTONS
 from ..core.quantities import FIELD
 from ..core.storage.atomic_files import write_atomically
 from ..core.unit_systems import Amount, Sentence, Units
@@ -92,7 +92,7 @@ def _label_lengths(axes: Axes, units: Units) -> None:
     """Label the axes of a section, which is drawn in mm, in a unit of length."""
     from matplotlib.ticker import FuncFormatter, MultipleLocator
 
-    unit = units.length_unit
+    unit = units.written(MILLIMETRES)
     axes.set_xlabel(f"across the cup's axis{unit.text_in_brackets}")
     axes.set_ylabel(f"along the cup's axis{unit.text_in_brackets}")
     if units is not Units.SI:

@@ -157,13 +157,26 @@ def study(
     if folder is None or not folder.exists():
         _check_space(task, folder)
     check_samples(task.design)
+    numbers = range(len(task.blocks))
     if folder is None:
-        return make_dataset(task, _compute_in_memory(task, engine, listen))
+        results = {name: numpy.empty(task.design.shape, dtype=DTYPES[name]) for name in task.variables}
+        for number, block in _report_progress(engine.run(task, numbers), task, numbers, listen):
+            for name, values in block.items():
+                results[name][task.blocks[number]] = values
+        return make_dataset(task, results)
     study_store = StudyStore(task, folder)
     study_store.prepare()
-    run = PieceRun(task, range(len(task.blocks)), study_store)
+    run = PieceRun(task, numbers, study_store)
     _check_space(task, folder, sum(map(task.blocks.n_points, run.missing)))
-    _compute_into_store(study_store, run, engine, listen)
+    n_stored = len(run.stored)
+    try:
+        for _ in _report_progress(run.compute_missing(engine), task, run.missing, listen):
+            n_stored += 1
+    except ConnectionError:
+        raise
+    except OSError as error:
+        state = f"{n_stored} of {counted(len(numbers), 'block')} stored; run the study again to resume"
+        raise OSError(error.errno, f"{error.strerror or error}; {state}", str(folder)) from error
     return read(str(folder))
 
 
@@ -233,27 +246,6 @@ def _axis_size(axis: Axis) -> int:
     """Return the size in bytes of the values along an axis, and of the cached samples."""
     cached = min(len(axis), CACHED_CHUNKS * CHUNK_SIZE) if isinstance(axis, SampleAxis) else 0
     return 8 * (len(axis) + cached) * len(axis.names)
-
-
-def _compute_in_memory(task: Task, engine: Engine, listen: Listener) -> dict[str, numpy.ndarray]:
-    arrays = {name: numpy.empty(task.design.shape, dtype=DTYPES[name]) for name in task.variables}
-    numbers = range(len(task.blocks))
-    for number, results in _report_progress(engine.run(task, numbers), task, numbers, listen):
-        for name, values in results.items():
-            arrays[name][task.blocks[number]] = values
-    return arrays
-
-
-def _compute_into_store(store: StudyStore, run: PieceRun, engine: Engine, listen: Listener) -> None:
-    task, n_stored = store.task, len(run.stored)
-    try:
-        for _ in _report_progress(run.compute_missing(engine), task, run.missing, listen):
-            n_stored += 1
-    except ConnectionError:
-        raise
-    except OSError as error:
-        state = f"{n_stored} of {counted(len(task.blocks), 'block')} stored; run the study again to resume"
-        raise OSError(error.errno, f"{error.strerror or error}; {state}", str(store.folder)) from error
 
 
 def _report_progress(

@@ -11,7 +11,7 @@ from collections import Counter, deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from contextlib import ExitStack
 from dataclasses import dataclass
 from multiprocessing import get_context, parent_process
 from pathlib import Path
@@ -90,7 +90,11 @@ class Processes:
         workers = self.workers or available_cores()
         pending, deaths = deque(numbers), Counter[int]()
         while pending:
-            with _start_pool(workers, work) as pool:
+            with limit_threads(), ExitStack() as at_end:
+                pool = ProcessPoolExecutor(
+                    workers, mp_context=get_context("spawn"), initializer=_initialize_worker, initargs=(work,)
+                )
+                at_end.callback(pool.shutdown, cancel_futures=True)
                 for number, future in _submit_until_worker_dies(pool, pending, _QUEUED_PER_WORKER * workers):
                     if future is _WORKER_DIED:
                         deaths[number] += 1
@@ -130,18 +134,6 @@ def _submit_until_worker_dies(
             died = isinstance(future.exception(), BrokenProcessPool)
             broken |= died
             yield number, _WORKER_DIED if died else future
-
-
-@contextmanager
-def _start_pool(workers: int, work: Work) -> Iterator[ProcessPoolExecutor]:
-    with limit_threads():
-        pool = ProcessPoolExecutor(
-            workers, mp_context=get_context("spawn"), initializer=_initialize_worker, initargs=(work,)
-        )
-        try:
-            yield pool
-        finally:
-            pool.shutdown(wait=True, cancel_futures=True)
 
 
 _work: Work | None = None  # work of this worker process

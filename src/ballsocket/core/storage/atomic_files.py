@@ -123,8 +123,11 @@ def make_draft_folder(path: Path) -> Iterator[Path]:
     prefix = f".{path.name[:_PREFIX_LENGTH]}."
     with suppress(OSError):
         for folder in path.parent.iterdir():
-            if folder.name.startswith(prefix) and is_draft_folder(folder.name) and _is_abandoned_draft(folder):
-                rmtree(folder, ignore_errors=True)
+            if folder.name.startswith(prefix) and is_draft_folder(folder.name):
+                with _lock_folder(folder) as locked:
+                    is_abandoned = locked and time.time() - folder.stat().st_mtime > _MIN_AGE
+                if is_abandoned:
+                    rmtree(folder, ignore_errors=True)
     try:
         temporary_folder = TemporaryDirectory(prefix=prefix, suffix=_DRAFT_SUFFIX, dir=path.parent)
     except OSError as error:  # the error names the path of the caller instead of the draft folder
@@ -147,12 +150,6 @@ def _lock_folder(folder: Path) -> Iterator[bool]:
         yield False
     finally:
         os.close(descriptor)
-
-
-def _is_abandoned_draft(folder: Path) -> bool:
-    """Check if the process that made a draft folder has ended."""
-    with _lock_folder(folder) as locked:
-        return locked and time.time() - folder.stat().st_mtime > _MIN_AGE
 
 
 def write_text(path: Path, text: str, encoding: str = "utf-8") -> Path:

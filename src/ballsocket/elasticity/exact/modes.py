@@ -17,7 +17,7 @@ from ...core.arrays import Numbers
 from ...core.checks import require
 from ...core.quantities import MATERIAL
 from ...problem import Joint, Support
-from .waves import UNIT, SupportedLayer, fixed_surface_condition, free_surface_condition
+from .waves import UNIT, SupportedLayer, free_surface_condition
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -154,7 +154,7 @@ class Socket:
     def _supported_layers(self, n: numpy.ndarray) -> list[SupportedLayer]:
         """Return the layers from the bore outwards, each with the condition that its backing imposes."""
         is_free = self.support is Support.FREE and not isinf(self.shells[-1].thickness)
-        condition = free_surface_condition(n) if is_free else fixed_surface_condition()
+        condition = free_surface_condition(n) if is_free else (UNIT, 0 * UNIT)  # u = 0
         layers: list[SupportedLayer] = []
         for shell, inner in zip(self.shells[::-1], self._interface_radii[-2::-1], strict=True):
             if layers:

@@ -238,7 +238,11 @@ class StressCurve:
         position = numpy.clip(position, 0.0, _STRESS_INTERVALS - 1e-9)
         first, fraction = position.astype(int), position % 1
         unique, which = numpy.unique(numpy.stack([first, first + 1]), return_inverse=True)
-        low, high = numpy.array([self._solve_stress_ratio(int(i)) for i in unique])[which.reshape(2, -1)]
+        for number in set(unique.tolist()) - set(self._cached_ratios):
+            half_angle = float(half_angle_at(2 * (start + number * step) - 1, self.curve.ratio))
+            state = self.curve.state(numpy.array([min(half_angle, self.curve.widest_angle)]), self.points)
+            self._cached_ratios[number] = float((largest_von_mises(state, numpy.array([True])) / state.max_pressure)[0])
+        low, high = numpy.array([self._cached_ratios[number] for number in unique.tolist()])[which.reshape(2, -1)]
         return low + fraction * (high - low)
 
     @cached_property
@@ -246,12 +250,3 @@ class StressCurve:
         """First coordinate of the half angles at which stresses are solved, and the coordinate step to the next."""
         first, last = (float(angle_root(a, self.curve.ratio)) for a in (_NARROWEST, self.curve.widest_angle))
         return min(first, last), max(last - first, 0.0) / _STRESS_INTERVALS
-
-    def _solve_stress_ratio(self, number: int) -> float:
-        """Return the stress ratio at the half angle of this index: solve it once, then read it from the cache."""
-        if number not in self._cached_ratios:
-            first, step = self._first_coordinate_and_step
-            angle = float(half_angle_at(2 * (first + number * step) - 1, self.curve.ratio))
-            state = self.curve.state(numpy.array([min(angle, self.curve.widest_angle)]), self.points)
-            self._cached_ratios[number] = float((largest_von_mises(state, numpy.array([True])) / state.max_pressure)[0])
-        return self._cached_ratios[number]

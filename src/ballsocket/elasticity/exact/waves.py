@@ -40,11 +40,6 @@ def _outer_product(column: tuple[numpy.ndarray, ...], row: tuple[numpy.ndarray, 
     return numpy.array(column)[:, None] * numpy.array(row)
 
 
-def fixed_surface_condition() -> tuple[Matrix, Matrix]:
-    """Return the boundary condition u = 0 of a fixed surface as matrices A and B of A u + B r σ = 0."""
-    return UNIT, 0 * UNIT
-
-
 def free_surface_condition(n: numpy.ndarray) -> tuple[Matrix, Matrix]:
     """Return the boundary condition σ = 0 of a free surface as matrices A and B of A u + B r σ = 0.
 
@@ -92,30 +87,6 @@ class Wave:
         return displacements, _matmul(wave.K, displacements)
 
 
-def growing_wave(n: numpy.ndarray, young: float, nu: float) -> Wave:
-    """Make the wave of r^(n-1) and r^(n+1), which grow outwards; r^(n-1) has the displacements u = (n, 1)."""
-    compressibility = 1 - 2 * nu
-    denominator = numpy.maximum(n + compressibility * (2 * n + 1), _MIN_DENOMINATOR)
-    weight = (2 - nu - compressibility * n) / denominator
-    N = _outer_product(((n + 1) * (n - 2 + 4 * nu), n + 5 - 4 * nu), (-1 / denominator, n / denominator))
-    K = (n - 1) * UNIT + _outer_product((n + 1, -1 + 0 * n), (weight, -n * weight))
-    return Wave.from_matrices(n, N, K * _twice_shear(young, nu), power=n - 1, single_power=1)
-
-
-def decaying_wave(n: numpy.ndarray, young: float, nu: float) -> Wave:
-    """Make the wave of r^-(n+2) and r^-n, which decay outwards; r^-(n+2) has the displacements u = (-n - 1, 1)."""
-    compressibility = 1 - 2 * nu
-    denominator = n + 1 + compressibility * (2 * n + 1)
-    weight = (3 * (1 - nu) + compressibility * n) / denominator
-    N = _outer_product((-n - 1, 1 + 0 * n), ((n - 4 + 4 * nu) / denominator, n * (n + 3 - 4 * nu) / denominator))
-    K = -(n + 2) * UNIT + _outer_product((n, 1 + 0 * n), (weight, (n + 1) * weight))
-    return Wave.from_matrices(n, N, K * _twice_shear(young, nu), power=n, single_power=2)
-
-
-def _twice_shear(young: float, nu: float) -> float:
-    return young / (1 + nu)
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SupportedLayer:
     """Elastic layer with the boundary condition A u + B r σ = 0 on its outer surface, for all degrees.
@@ -132,11 +103,23 @@ class SupportedLayer:
 
     @cached_property
     def _growing_wave(self) -> Wave:
-        return growing_wave(self.n, self.young, self.poisson)
+        """Wave of r^(n-1) and r^(n+1), which grow outwards; r^(n-1) has the displacements u = (n, 1)."""
+        n, nu, compressibility = self.n, self.poisson, 1 - 2 * self.poisson
+        denominator = numpy.maximum(n + compressibility * (2 * n + 1), _MIN_DENOMINATOR)
+        weight = (2 - nu - compressibility * n) / denominator
+        N = _outer_product(((n + 1) * (n - 2 + 4 * nu), n + 5 - 4 * nu), (-1 / denominator, n / denominator))
+        K = (n - 1) * UNIT + _outer_product((n + 1, -1 + 0 * n), (weight, -n * weight))
+        return Wave.from_matrices(n, N, K * (self.young / (1 + nu)), power=n - 1, single_power=1)
 
     @cached_property
     def _decaying_wave(self) -> Wave:
-        return decaying_wave(self.n, self.young, self.poisson)
+        """Wave of r^-(n+2) and r^-n, which decay outwards; r^-(n+2) has the displacements u = (-n - 1, 1)."""
+        n, nu, compressibility = self.n, self.poisson, 1 - 2 * self.poisson
+        denominator = n + 1 + compressibility * (2 * n + 1)
+        weight = (3 * (1 - nu) + compressibility * n) / denominator
+        N = _outer_product((-n - 1, 1 + 0 * n), ((n - 4 + 4 * nu) / denominator, n * (n + 3 - 4 * nu) / denominator))
+        K = -(n + 2) * UNIT + _outer_product((n, 1 + 0 * n), (weight, (n + 1) * weight))
+        return Wave.from_matrices(n, N, K * (self.young / (1 + nu)), power=n, single_power=2)
 
     @cached_property
     def _log_ratio(self) -> float:
@@ -213,5 +196,5 @@ class SupportedLayer:
         stiff = self.young / (1 - nu**2)
         s_phiphi = nu / (1 - nu) * s_rr + stiff * ((1 + nu) * u_r - bent)
         s_thetatheta = nu / (1 - nu) * s_rr + stiff * ((1 + nu) * u_r - nu * bent)
-        stresses = (s_rr, s_rphi, s_phiphi, s_thetatheta, _twice_shear(self.young, nu) * u_phi)
+        stresses = (s_rr, s_rphi, s_phiphi, s_thetatheta, self.young / (1 + nu) * u_phi)
         return numpy.stack([u_r, u_phi, *(s / r for s in stresses)])

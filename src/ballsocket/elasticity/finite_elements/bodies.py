@@ -40,16 +40,11 @@ class CondensedBody:
     fixed_unknowns: Numbers  # bool (unknowns,), mask of the unknowns that the supports fix to zero
     contact: Numbers  # (nodes,), nodes of the contact surface, from the pole outwards
 
-    @property
-    def normal_unknowns(self) -> Numbers:
-        """Indices of the unknowns that are normal displacements of contact nodes."""
-        return 2 * self.contact + 1
-
     @cached_property
     def free_unknowns(self) -> Numbers:
         """Indices of the free unknowns in the order of elimination, those of the contact last."""
         block, unknowns = self.elastic.block, self.elastic.element_unknowns
-        return elimination_order(block, unknowns, self.fixed_unknowns, self.normal_unknowns)
+        return elimination_order(block, unknowns, self.fixed_unknowns, 2 * self.contact + 1)  # normal ones last
 
     def free_stiffness(self) -> csc_matrix:
         """Assemble the stiffness of the free unknowns in the order of elimination."""

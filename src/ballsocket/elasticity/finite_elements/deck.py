@@ -108,12 +108,21 @@ class Deck(InputDeck):
             yield from (f"** {line}" for line in wrap(sentence, _LINE_WIDTH))
         for number, row in enumerate(zip(*self.expected.values(), strict=True), 1):
             yield f"** {number:4d}" + "".join(f"{value:16.7g}" for value in row)
-        yield from mesh_lines(bodies)
+        yield "*NODE, NSET=ALL"
+        for body in (bodies.socket, bodies.ball):
+            yield from body.node_lines()
+        for body in (bodies.socket, bodies.ball):
+            yield from body.element_lines()
+        yield from node_set_lines("BORE", bodies.socket.surface()["node"])
+        yield from node_set_lines("ROUND", bodies.ball.surface()["node"])
         curve, hardening = self.contact.joint.liner.yield_curve, {}
         if self.contact.yields and curve:  # at scaled stresses and strains
             hardening = {"LINER": curve.scaled(self.scale, self.scale)}
         yield from material_lines(bodies.materials, hardening)
-        yield from contact_lines(*touching_faces(bodies), self.contact_penalty)
+        lined = (f"{element}, {_INSIDE}" for element in bodies.socket.contact_elements(bodies.reach, strip=0))
+        ball_elements = bodies.ball.contact_elements(bodies.reach, strip=-1, extra=1)  # one longer than the socket's
+        pressed = (f"{element}, {_OUTSIDE}" for element in ball_elements)
+        yield from contact_lines(lined, pressed, self.contact_penalty)
         yield from support_lines(bodies)
         for depth in self._indentations:
             yield from step_lines([(2, -self.scale * depth)], _STEP_OUTPUT)
@@ -203,24 +212,6 @@ _STEP_OUTPUT = (
     *("*NODE PRINT, NSET=BORE, GLOBAL=YES", "U", "*NODE PRINT, NSET=ROUND, GLOBAL=YES", "U"),
     *("*CONTACT FILE", "CDIS, CSTR"),
 )
-
-
-def mesh_lines(bodies: DeckBodies) -> Iterator[str]:
-    """Yield the lines of nodes and elements of both bodies, and of the sets of contact nodes."""
-    yield "*NODE, NSET=ALL"
-    for body in (bodies.socket, bodies.ball):
-        yield from body.node_lines()
-    for body in (bodies.socket, bodies.ball):
-        yield from body.element_lines()
-    yield from node_set_lines("BORE", bodies.socket.surface()["node"])
-    yield from node_set_lines("ROUND", bodies.ball.surface()["node"])
-
-
-def touching_faces(bodies: DeckBodies) -> tuple[list[str], list[str]]:
-    """Return the faces of socket and ball up to the last pressure node; the ball's are one element longer."""
-    lined = bodies.socket.contact_elements(bodies.reach, strip=0)
-    pressed = bodies.ball.contact_elements(bodies.reach, strip=-1, extra=1)
-    return [f"{element}, {_INSIDE}" for element in lined], [f"{element}, {_OUTSIDE}" for element in pressed]
 
 
 def support_lines(bodies: DeckBodies) -> Iterator[str]:

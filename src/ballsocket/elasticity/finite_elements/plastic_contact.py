@@ -9,6 +9,7 @@ after a permanent set it can begin anywhere.
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar, NamedTuple
@@ -226,12 +227,43 @@ class PlasticPath:
             stiffness=0.0,
         )
 
-    def approach(self, kind: str, load: float, contact: PlasticContact) -> PlasticContact | None:
-        """Go from a contact to a load ("force" in N, "indentation" in mm) at once; None without equilibrium."""
-        try:
-            return self._increment(kind, load, contact)
-        except (numpy.linalg.LinAlgError, RuntimeError):  # singular: a liner that collapses has no stiffness
-            return None
+    def approach(self, kind: str, load: float, old: PlasticContact) -> PlasticContact | None:
+        """Go from a contact to a load ("force" in N, "indentation" in mm) in one increment; None without equilibrium.
+
+        There is none either if Newton's method does not converge.
+        """
+        with suppress(numpy.linalg.LinAlgError, RuntimeError):  # singular: a liner that collapses has no stiffness
+            size = len(old.displacement)
+            state = numpy.concatenate([old.displacement, old.pressures, [old.indentation]])
+            response, residual = self._respond(state, old.plastic), numpy.inf
+            scale = numpy.linalg.norm(response.forces)
+            for _ in range(_MAX_ITERATIONS):
+                tangent = self.body.tangent(*response[:4])
+                unloaded = state[:size] - tangent.factors.solve(response.internal)
+                linear = self._solve_contact(kind, load, tangent, unloaded, state[size:-1], state[-1])
+                if linear is None:
+                    return None
+                pressures, d, stiffness = linear
+                moved = tangent.factors.solve(self._nodal_forces(pressures) - response.internal)
+                step = numpy.concatenate([moved, pressures - state[size:-1], [d - state[-1]]])
+                response, previous = self._respond(state + step, old.plastic), residual
+                if response.residual > previous:
+                    step *= self._share_of(step, state, old.plastic, load if kind == "force" else 0.0)
+                    response = self._respond(state + step, old.plastic)
+                state, residual = state + step, response.residual
+                is_linear = abs(step[-1]) <= 1e-4 * abs(state[-1]) or self.gap.steps == 1
+                if residual <= _TOLERANCE * max(numpy.linalg.norm(response.forces), scale) and is_linear:
+                    return PlasticContact(
+                        path=self,
+                        indentation=float(state[-1]),
+                        pressures=state[size:-1],
+                        displacement=state[:size],
+                        plastic=response.plastic,
+                        stiffness=stiffness,
+                    )
+                if not numpy.isfinite(residual):
+                    return None
+        return None
 
     def _nodal_forces(self, pressures: Numbers) -> Numbers:
         """Compute the forces of pressures on the free unknowns of the socket."""
@@ -246,40 +278,6 @@ class PlasticPath:
         plastic, a, b = self.body.law.update(strain, old)
         internal = self.body.internal_forces(state[:size], plastic)
         return _Response(strain, plastic, a, b, self._nodal_forces(state[size:-1]), internal)
-
-    def _increment(self, kind: str, load: float, old: PlasticContact) -> PlasticContact | None:
-        """Solve one increment from an equilibrium to a load; None if Newton's method does not converge."""
-        size = len(old.displacement)
-        state = numpy.concatenate([old.displacement, old.pressures, [old.indentation]])
-        response, residual = self._respond(state, old.plastic), numpy.inf
-        scale = numpy.linalg.norm(response.forces)
-        for _ in range(_MAX_ITERATIONS):
-            tangent = self.body.tangent(*response[:4])
-            unloaded = state[:size] - tangent.factors.solve(response.internal)
-            linear = self._solve_contact(kind, load, tangent, unloaded, state[size:-1], state[-1])
-            if linear is None:
-                return None
-            pressures, d, stiffness = linear
-            moved = tangent.factors.solve(self._nodal_forces(pressures) - response.internal)
-            step = numpy.concatenate([moved, pressures - state[size:-1], [d - state[-1]]])
-            response, previous = self._respond(state + step, old.plastic), residual
-            if response.residual > previous:
-                step *= self._share_of(step, state, old.plastic, load if kind == "force" else 0.0)
-                response = self._respond(state + step, old.plastic)
-            state, residual = state + step, response.residual
-            is_linear = abs(step[-1]) <= 1e-4 * abs(state[-1]) or self.gap.steps == 1
-            if residual <= _TOLERANCE * max(numpy.linalg.norm(response.forces), scale) and is_linear:
-                return PlasticContact(
-                    path=self,
-                    indentation=float(state[-1]),
-                    pressures=state[size:-1],
-                    displacement=state[:size],
-                    plastic=response.plastic,
-                    stiffness=stiffness,
-                )
-            if not numpy.isfinite(residual):
-                return None
-        return None
 
     def _share_of(self, step: Numbers, state: Numbers, old: PlasticStrain, force: float) -> float:
         """Find the share of a step with the lowest energy, which is a convex function of the state."""

@@ -148,24 +148,19 @@ class PlasticLoadCurve:
         contacts: list[PlasticContact | None] = []
         fitting = 0
         for number in range(self.elastic.mesh_class(kind, max(loads)), -1, -1):
-            contacts = self._follow_in_class(kind, loads, number, mesh)
+            path, contacts = self._path(number, mesh), []
+            contact: PlasticContact | None = path.start
+            for load in loads:
+                start = 0.0 if contact is None else float(getattr(contact, kind))
+                count = int(numpy.ceil(abs(load - start) / self._rung(kind, number, 1))) or 1
+                for target in numpy.linspace(start, load, min(count, _RUNGS) + 1)[1:].tolist():
+                    contact = None if contact is None else path.approach(kind, target, contact)
+                contacts.append(contact)
             misfits = (index for index, each in enumerate(contacts) if each and not self._fits(each, number))
             fitting = next(misfits, len(contacts))
             if fitting == len(contacts):
                 break
         return contacts[:fitting] + [None] * (len(contacts) - fitting)
-
-    def _follow_in_class(self, kind: str, loads: list[float], number: int, mesh: int) -> list[PlasticContact | None]:
-        path = self._path(number, mesh)
-        contact: PlasticContact | None = path.start
-        contacts = []
-        for load in loads:
-            start = 0.0 if contact is None else float(getattr(contact, kind))
-            count = int(numpy.ceil(abs(load - start) / self._rung(kind, number, 1))) or 1
-            for target in numpy.linspace(start, load, min(count, _RUNGS) + 1)[1:].tolist():
-                contact = None if contact is None else path.approach(kind, target, contact)
-            contacts.append(contact)
-        return contacts
 
     def _fits(self, contact: PlasticContact, number: int) -> bool:
         """Return True unless the contact reaches the end of its pressure nodes inside the bore."""

@@ -167,15 +167,10 @@ def check_memory(size: MeshSize, order: int) -> None:
     """Raise ValueError for a mesh that does not fit into the free memory."""
     import psutil
 
-    needed, free = bytes_needed(size.largest, order), psutil.virtual_memory().available
+    nodes, free = size.largest, psutil.virtual_memory().available
+    needed = 2 * 12 * 8 * 2 * nodes * log2(max(nodes, 2)) + 1000 * nodes * order  # matrix factors, element matrices
     if needed > free:
         raise ValueError(
             f"a mesh of {size.elements} elements needs about {needed / _GIB:.2g} GiB of memory, and "
             f"{free / _GIB:.2g} GiB are free: use larger elements"
         )
-
-
-def bytes_needed(nodes: int, order: int) -> float:
-    """Estimate the peak memory in bytes of one body, from both matrix factors and the element matrices."""
-    factors = 2 * 12 * 8 * 2 * nodes * log2(max(nodes, 2))
-    return factors + 1000 * nodes * order

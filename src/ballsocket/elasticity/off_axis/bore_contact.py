@@ -26,10 +26,6 @@ class GapField:
     depth: Numbers  # (rings, meridians), depth of the worn bore below its sphere in mm
     kind: type[LinearGap] | type[CircularGap]  # `LinearGap` or `CircularGap`
 
-    def on_coarser_grid(self, grid: Grid) -> GapField:
-        """Return this gap on the next coarser grid."""
-        return replace(self, grid=grid, depth=self.grid.coarsen(self.depth))
-
     def overlap(self, displacement: Numbers) -> Numbers:
         """Compute the overlap of ball and undeformed bore in mm, negative in a gap: (batch, rings, meridians).
 
@@ -104,7 +100,8 @@ class BoreContact:
         compliance = self.compliance.coarser_compliance
         if compliance is None:
             return None
-        return replace(self, compliance=compliance, gap=self.gap.on_coarser_grid(compliance.grid))
+        gap = replace(self.gap, grid=compliance.grid, depth=self.gap.grid.coarsen(self.gap.depth))
+        return replace(self, compliance=compliance, gap=gap)
 
     def force(self, pressure: Numbers) -> Numbers:
         """Compute the force on the bore in N, (batch, 3), from pressures (batch, rings, meridians)."""

@@ -224,7 +224,12 @@ class JaxSphere:
             raise ValueError(
                 'dtype = "float64" needs jax.config.update("jax_enable_x64", True) first: the default of JAX is single'
             )
-        gap, (force, direction) = self._bore.gap, _check_loads(force, direction)
+        gap, force = self._bore.gap, check_numeric("force", force)
+        shape = numpy.shape(force)
+        if len(shape) != 1 or 0 in shape:
+            raise ValueError(f"force of shape {shape} is not allowed: it is a row (loads,) of one or more forces")
+        direction = check_vectors("direction", direction, "x, y, z")
+        check_shape("direction", direction, ((3,), (1, 3), (*shape, 3)))
         force = xp.asarray(force, dtype=self.dtype)
         direction = xp.broadcast_to(xp.asarray(direction, dtype=self.dtype), (*force.shape, 3))
         c = self._replace("clearance", gap.clearance, clearance)
@@ -282,16 +287,6 @@ def _check_bore(model: Any, joint: Any) -> None:
     check_domain(model.domain, joint, model.name)
 
 
-def _check_loads(force: Any, direction: Any) -> tuple[Array, Array]:
-    """Check forces (loads,) and their directions (loads, 3) or (3,); return both as arrays."""
-    force, direction = check_numeric("force", force), check_vectors("direction", direction, "x, y, z")
-    shape = numpy.shape(force)
-    if len(shape) != 1 or 0 in shape:
-        raise ValueError(f"force of shape {shape} is not allowed: it is a row (loads,) of one or more forces")
-    check_shape("direction", direction, ((3,), (1, 3), (*shape, 3)))
-    return force, direction
-
-
 @cache
 def _compiled_press() -> Any:
     import jax
@@ -342,7 +337,12 @@ def _press_loads(
         stiffness_matrix=search.solve_sensitivity(fixed, share, search.TANGENT_ITERATIONS, edge_compliance).tangent,
         pressure=fields,
     )
-    return _mask_unconverged(contacts)
+    masked = {}  # the numbers of loads that did not converge are NaN
+    for name, values in contacts._asdict().items():
+        if name not in ("converged", "error", "edge_loaded"):
+            converged = contacts.converged.reshape(-1, *(1 for _ in values.shape[1:]))
+            masked[name] = xp.where(converged, values, xp.nan)
+    return contacts._replace(**masked)
 
 
 def _initial_displacement(bore: BoreArrays, axes: Array, force: Array, clearance: Array, depth: Array) -> Array:
@@ -353,18 +353,6 @@ def _initial_displacement(bore: BoreArrays, axes: Array, force: Array, clearance
     positive = xp.maximum(clearance, 0.0)
     indentation = linear_indentation(xp.sqrt(bore.scale), positive, modulus, force)
     return axes.T * (positive + xp.max(xp.maximum(depth, 0.0)) + indentation)
-
-
-def _mask_unconverged(contacts: JaxContacts) -> JaxContacts:
-    """Set the numbers of loads that did not converge to NaN."""
-    import jax.numpy as xp
-
-    def mask(values: Array) -> Array:
-        converged = contacts.converged.reshape(-1, *(1 for _ in values.shape[1:]))
-        return xp.where(converged, values, xp.nan)
-
-    kept = ("converged", "error", "edge_loaded")
-    return contacts._replace(**{name: mask(values) for name, values in contacts._asdict().items() if name not in kept})
 
 
 def _measure_outline(bores: _Bores, contact: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:

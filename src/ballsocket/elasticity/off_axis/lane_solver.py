@@ -85,8 +85,8 @@ def solve_lanes(
         if not lanes.any():
             continue
         unfolded = make_bore_arrays(bore, numpy.float64), make_bore_arrays(bore), make_bore_arrays(coarser)
-        bores = _LaneBores(*(search.fold_bore(part, even=True) if components is _PLANE else part for part in unfolded))
-        indices, size = numpy.flatnonzero(lanes), max(_BLOCK_CELLS // bores.single.gap.size, 1)
+        bores = [search.fold_bore(part, even=True) if components is _PLANE else part for part in unfolded]
+        indices, size = numpy.flatnonzero(lanes), max(_BLOCK_CELLS // bores[1].gap.size, 1)
         for block in (indices[i : i + size] for i in range(0, len(indices), size)):
             row = numpy.ix_(block, components)
             with numpy.errstate(all="ignore"):  # a lane that diverges is reported as unconverged
@@ -112,14 +112,6 @@ def _are_symmetric(bore: BoreContact, vectors: Numbers) -> Numbers:
     return abs(vectors[:, 1]) <= _PLANE_TOLERANCE * numpy.linalg.norm(vectors, axis=1)
 
 
-class _LaneBores(NamedTuple):
-    """Arrays of a bore in double and in single precision, and of the bore in wide cells in single precision."""
-
-    double: BoreArrays
-    single: BoreArrays
-    coarse: BoreArrays
-
-
 class _Solution(NamedTuple):
     """Displacements (3, lanes), pressures (meridians, rings, lanes) and residuals (lanes,) of a search."""
 
@@ -128,8 +120,13 @@ class _Solution(NamedTuple):
     error: Numbers
 
 
-def _solve_block(bores: _LaneBores, load: Numbers, force_scale: Numbers, start: Numbers, tolerance: float) -> _Solution:
-    """Solve one block of lanes: in wide cells, in the cells of the bore, and again after failed checks."""
+def _solve_block(
+    bores: list[BoreArrays], load: Numbers, force_scale: Numbers, start: Numbers, tolerance: float
+) -> _Solution:
+    """Solve one block of lanes: in wide cells, in the cells of the bore, and again after failed checks.
+
+    The arrays of the bore are in double and in single precision, and in single precision of wide cells.
+    """
     double, single, coarse = bores
     single_load, single_scale = load.astype(numpy.float32), force_scale.astype(numpy.float32)
     solved, predictor = _solve_coarse(coarse, single_load, single_scale, start.astype(numpy.float32))

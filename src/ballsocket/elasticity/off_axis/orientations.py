@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import degrees, inf, radians
@@ -179,12 +178,22 @@ def orient(
            [ 0.2, -0.6]])
     """
     model = Sphere() if model is None else check_sphere(model)
-    _check_single(joint, load)
+    check_joint(joint)
+    if any(numpy.shape(arrays.to_numpy(number)) for number in joint.numbers()):
+        raise TypeError("joint must be one joint, of plain numbers: arrays of joints are not allowed")
+    for name, value in load.items():
+        if value is not None:
+            check_number(name, value)
     single = model.direction.ndim == 1
     require("directions of the model", model.direction.size // 3, single, "give one direction of the load")
-    axes = [
-        _check_angles(name, values) for name, values in (("inclination", inclination), ("anteversion", anteversion))
-    ]
+    axes = []
+    for name, values in (("inclination", inclination), ("anteversion", anteversion)):
+        angles = numpy.atleast_1d(arrays.to_numpy(CUP[name].check(values)).astype(float))
+        if angles.ndim != 1 or angles.size == 0:
+            raise ValueError(f"{name} of shape {angles.shape} is not allowed: give a row of angles")
+        rising = bool((numpy.diff(angles) > 0).all())
+        require(f"{name} from {angles[0]:.4g} to", angles[-1], rising, "angles (rad) rise from one to the next")
+        axes.append(angles)
     start, contacts = perf_counter(), []
     named_load: dict[str, Any] = {**load}
     for number, angle in enumerate(axes[0]):
@@ -203,21 +212,3 @@ def orient(
         seconds=perf_counter() - start,
         **fields,
     )
-
-
-def _check_single(joint: Any, load: Mapping[str, Any]) -> None:
-    check_joint(joint)
-    if any(numpy.shape(arrays.to_numpy(number)) for number in joint.numbers()):
-        raise TypeError("joint must be one joint, of plain numbers: arrays of joints are not allowed")
-    for name, value in load.items():
-        if value is not None:
-            check_number(name, value)
-
-
-def _check_angles(name: str, values: Array) -> Numbers:
-    angles = numpy.atleast_1d(arrays.to_numpy(CUP[name].check(values)).astype(float))
-    if angles.ndim != 1 or angles.size == 0:
-        raise ValueError(f"{name} of shape {angles.shape} is not allowed: give a row of angles")
-    rising = bool((numpy.diff(angles) > 0).all())
-    require(f"{name} from {angles[0]:.4g} to", angles[-1], rising, "angles (rad) rise from one to the next")
-    return angles

@@ -251,15 +251,20 @@ def pull_out(model: Sphere, joint: Joint, friction: float = 0.0) -> PullOut:
     opening = float(joint.ball_radius**2 - (displacement + socket_radius * cos(reach)) ** 2) ** 0.5
     compression = max(opening - socket_radius * sin(reach), 0.0)
     strain = compression / float(min(joint.liner_thickness, joint.socket_radius))
-    yields = None if joint.liner.yield_stress is None else _utilisation_at(contact, best)
+    utilisation = None
+    if joint.liner.yield_stress is not None:
+        # by the largest pressure of the cells: the fit of `max_pressure` does not apply to a narrow band at the rim
+        ((_, contacts),) = contact.laws.pieces
+        largest, fitted = float(contacts.state.equilibrium.pressure[best].max()), float(contact.max_pressure[best])
+        utilisation = float(contact.utilisation[best]) * largest / fitted if fitted > 0.0 else 0.0
     return PullOut(
         force=max(float(fine_forces[best]), 0.0) if strain <= MAX_RIM_STRAIN else nan,
         displacement=displacement,
         strain=strain,
-        utilisation=yields,
+        utilisation=utilisation,
         displacements=displacements,
         forces=forces,
-        notes=tuple(_pull_out_notes(strain, yields)),
+        notes=tuple(_pull_out_notes(strain, utilisation)),
     )
 
 
@@ -277,17 +282,6 @@ def _pulling_forces(contact: OffAxisContact, displacements: Numbers, friction: f
     across = radius * numpy.hypot(grid.centroids[0], grid.centroids[1])
     normal = (outward + friction * across) / numpy.hypot(outward, across)
     return radius**2 * (pressure * grid.areas * normal).sum(axis=(1, 2))
-
-
-def _utilisation_at(contact: OffAxisContact, step: int) -> float:
-    """Estimate the von Mises stress over the yield stress at a step, from the largest pressure of the cells.
-
-    The contact on its way out is a narrow band at the rim, to which the fit of `max_pressure` does not apply.
-    """
-    ((_, contacts),) = contact.laws.pieces
-    largest = float(contacts.state.equilibrium.pressure[step].max())
-    fitted = float(contact.max_pressure[step])
-    return float(contact.utilisation[step]) * largest / fitted if fitted > 0.0 else 0.0
 
 
 def _pull_out_notes(strain: float, utilisation: float | None) -> Iterator[str]:

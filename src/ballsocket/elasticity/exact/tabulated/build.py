@@ -273,14 +273,12 @@ def _largest_errors(model: table.Tabulated, numbers: tuple[Numbers, ...], exact:
     by_angle, by_force = model.press(joint, half_angle=numbers[0]), model.press(joint, force=known["force"])
     results = [(name, getattr(by_angle, name), known[name], "") for name in BY_ANGLE]
     results += [(name, getattr(by_force, name), known[name], " by force") for name in BY_FORCE]
-    errors = ((name + suffix, abs(value / expected - 1)) for name, value, expected, suffix in results)
-    return tuple(_largest_error(name, error, numbers) for name, error in errors)
-
-
-def _largest_error(name: str, error: Numbers, numbers: tuple[Numbers, ...]) -> LargestError:
-    """Find the largest error and describe its contact; NaN counts as infinite."""
-    k = int(numpy.argmax(numpy.nan_to_num(error, nan=numpy.inf)))
-    angle, poisson, ratio, softness, ball_poisson = (float(values[k]) for values in numbers)
-    ball = f", E/E_ball {softness:.4f}, ν_ball {ball_poisson:.3f}" if softness else ""
-    text = f"ε {degrees(angle):.2f}°, ν {poisson:.4f}, R2/L {ratio:.3f}{ball}"
-    return LargestError(quantity=name, error=float(error[k]), location=text)
+    largest = []
+    for name, value, expected, suffix in results:
+        error = abs(value / expected - 1)
+        k = int(numpy.argmax(numpy.nan_to_num(error, nan=numpy.inf)))
+        angle, poisson, ratio, softness, ball_poisson = (float(values[k]) for values in numbers)
+        ball = f", E/E_ball {softness:.4f}, ν_ball {ball_poisson:.3f}" if softness else ""
+        text = f"ε {degrees(angle):.2f}°, ν {poisson:.4f}, R2/L {ratio:.3f}{ball}"
+        largest.append(LargestError(quantity=name + suffix, error=float(error[k]), location=text))
+    return tuple(largest)

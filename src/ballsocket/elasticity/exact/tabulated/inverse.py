@@ -18,7 +18,7 @@ from ....contact.coordinates import LIMIT, angle_root, half_angle_at
 from ....contact.roots import Increasing, implicit_root, scalar_increasing_root
 from ....core import arrays
 from ....core.arrays import Array, Numbers, convert_like, exp, log, where
-from ....core.chebyshev import Pair, chebyshev_coefficients, chebyshev_points, multiply_factors, series_values
+from ....core.chebyshev import Pair, chebyshev_coefficients, chebyshev_points, contract_factors, series_values
 from .chebyshev import load_tables, thickness_ratio_at
 from .curves import (
     ONE,
@@ -103,7 +103,8 @@ def start_series(curves: JointCurves, kind: str) -> Array:
         return curves.take_shared(start_series(curves.shared, kind))
     pairs = zip(curves.liner_polynomials, _START_COUNTS[:2], strict=True)
     first, second = (polynomials[:count, ...] for polynomials, count in pairs)
-    return multiply_factors(convert_like(_start_table(curves.file, kind), first), first, second)
+    contracted, products = contract_factors(convert_like(_start_table(curves.file, kind), first), first, second)
+    return contracted @ products
 
 
 @cache

@@ -154,24 +154,6 @@ CurveReader = Callable[[JointCurves, Array], tuple[Array, ...]]
 """Function of the curves of joints and the loads of contacts (contacts,) that returns arrays (contacts,)."""
 
 
-def solve_with_tables(
-    file: str, joint: Joint, load: Array, compute_quantities: CurveReader
-) -> tuple[TableSolution, Array]:
-    """Solve contacts for loads with the tables; NaN beyond the range of the tables.
-
-    `compute_quantities` returns ε, d, F, p0, dF/dd and the last relative change of ε from the curves of joints and the
-    loads. The last change is returned too.
-    """
-    *values, shift = _compute_in_blocks(file, joint, load, compute_quantities)
-    fits = arrays.logical_not(values[1] < 0)  # a negative indentation is wider than the perfect fit
-    loads = broadcast(load, values[1])
-    is_loaded = loads > 0
-    if arrays.all_true(fits & is_loaded) is not True:
-        rest = where(loads == 0, 0.0 * loads, math.nan)  # no solution for a traced load below 0
-        values = [where(is_loaded, where(fits, value, math.nan), rest) for value in values]
-    return TableSolution(file, joint, *values), shift
-
-
 def curve_reader(kind: str) -> CurveReader:
     """Return a function that computes ε, d, F, p0, dF/dd and the last change of ε from curves and loads of one kind."""
 
@@ -255,10 +237,6 @@ def _ball_poisson(contact: Any) -> Array:
     return 0.3 + 0.0 * joint.liner.young if joint.ball is None else joint.ball.poisson + 0.0 * joint.liner.young
 
 
-def _backing_count(contact: Any) -> Array:
-    return len(contact.joint.backing) + 0.0 * contact.joint.liner.young
-
-
 _NOT_TABULATED = "outside the tables: use exact"
 
 
@@ -302,7 +280,12 @@ class Tabulated(Model):
         Range(quantity="joint.thickness_ratio", low=THICKNESS_RATIO[0], high=THICKNESS_RATIO[1], why=_NOT_TABULATED),
         Range(quantity="joint.modulus_ratio", high=0.0201, why=_NOT_TABULATED),
         Range(quantity=_ball_poisson, symbol="ν_ball", low=-0.01, high=0.501, why=_NOT_TABULATED),
-        Range(quantity=_backing_count, symbol="layers behind the liner", high=1.0, why=_NOT_TABULATED),
+        Range(
+            quantity=lambda contact: len(contact.joint.backing) + 0.0 * contact.joint.liner.young,
+            symbol="layers behind the liner",
+            high=1.0,
+            why=_NOT_TABULATED,
+        ),
         Range(quantity="joint.backing_ratio", high=1.0, why="a free outer surface is not in the tables: use exact"),
     )
     validity: ClassVar[tuple[Range, ...]] = (
@@ -325,11 +308,18 @@ class Tabulated(Model):
         return self.solve_with_reader(joint, kind, load, curve_reader(kind))
 
     def solve_with_reader(self, joint: Joint, kind: str, load: Array, read: CurveReader) -> SolverResult:
-        """Solve the contacts for loads of one kind with a function that evaluates the curves of joints.
+        """Solve the contacts for loads of one kind; NaN beyond the range of the tables.
 
-        `read` is such a function, see `curve_reader`.
+        The function `read` evaluates the curves of joints, see `curve_reader`.
         """
-        solution, shift = solve_with_tables(self.file, joint, load, read)
+        *values, shift = _compute_in_blocks(self.file, joint, load, read)
+        fits = arrays.logical_not(values[1] < 0)  # a negative indentation is wider than the perfect fit
+        loads = broadcast(load, values[1])
+        is_loaded = loads > 0
+        if arrays.all_true(fits & is_loaded) is not True:
+            rest = where(loads == 0, 0.0 * loads, math.nan)  # no solution for a traced load below 0
+            values = [where(is_loaded, where(fits, value, math.nan), rest) for value in values]
+        solution = TableSolution(self.file, joint, *values)
         tolerance = _ROUNDING_ERRORS * arrays.machine_epsilon(load)
         return SolverResult(
             laws=solution,
