@@ -41,8 +41,7 @@ function checks({ rows }) {
       cell("td", capacity), measure, cell("td", [result, "", "result"]), cell("td", [source, "", "source"]));
   });
   const top = element("tr", {}, ...heads.map((head) => element("th", { scope: "col" }, head)));
-  const region = { class: "checks", role: "region", "aria-label": "checks" };
-  return element("div", region, element("table", {}, top, ...lines));
+  return element("div", { class: "checks" }, element("table", {}, top, ...lines));
 }
 /** A row of cells, or one with a style, a line before its head and cells, of which the last reaches the end. */
 function tableRow(row, count) {
