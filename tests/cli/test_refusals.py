@@ -9,8 +9,10 @@ from ..places import EXAMPLES
 from .command import refusal
 
 ABBREVIATIONS = {
-    "{wear_test}": shlex.quote(str(EXAMPLES / "wear_test.toml")),
-    "{hip}": shlex.quote(str(EXAMPLES / "hip.toml")),
+    **{f"{{{path.stem.replace('_', '-')}}}": shlex.quote(str(path)) for path in EXAMPLES.glob("*.toml")},
+    "{liner}": f"--liner {shlex.quote(str(EXAMPLES / 'planning' / 'liner.stl'))}",
+    "{head}": f"--head {shlex.quote(str(EXAMPLES / 'planning' / 'head.stl'))}",
+    "{pelvis}": f"--landmarks {shlex.quote(str(EXAMPLES / 'planning' / 'pelvis.mrk.json'))}",
     "{hip-36}": "hip-36 --force 3kN",
     "{sizes}": "--ball-radius 16 --clearance 0.1 --liner-thickness 6",
     "{export}": "--out a hip-28",

@@ -157,14 +157,14 @@ def test_the_command_prints_bands_uncut_and_reasons_of_invalid_contacts(tmp_path
 
 @pytest.mark.long
 def test_results_do_not_depend_on_the_executor():
-    run = cohort_run(40)
+    run = cohort_run(20)
     np.testing.assert_array_equal(run.simulate().table, run.simulate(Processes(workers=2)).table)
 
 
 @pytest.mark.long
 def test_a_killed_cohort_resumes(tmp_path):
     file, store = short_file(tmp_path, ("cycles = 1e4", "cycles = 1e6")), tmp_path / "store"
-    words = ["hip", str(file), "--patients", "112", "--store", str(store)]
+    words = ["hip", str(file), "--patients", "64", "--store", str(store)]
     program = stopped_program(12, ".npz")  # the fourth file has a folder and a content, but not yet its name
     subprocess.run([sys.executable, "-c", program, *words], stdout=subprocess.DEVNULL)
     times = {path.name: path.stat().st_mtime_ns for path in store.glob("*.npz")}

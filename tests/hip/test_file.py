@@ -107,7 +107,7 @@ def read_csv(path):
 def test_json_has_the_results_of_python(solved_file):
     folder, answer = solved_file
     file = read_hip(folder / "hip.toml")
-    use, history = file.use, file.use.after(file.cycles, file.report_at)
+    use, history = file.use, file.use.after(file.cycles, file.report_at, store=folder / "store")
     expected = {
         "slide_mm": use.frame.slide,
         "pressure_slide_integral_Nm": use.first.work,

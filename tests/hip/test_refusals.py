@@ -1,6 +1,5 @@
 """Values, files and command lines of hips that are refused, each with its message."""
 
-import re
 from dataclasses import replace
 from math import inf, nan, pi, radians
 
@@ -19,7 +18,6 @@ from ballsocket.hip.wear_law import wear_factor, with_coefficient
 from ballsocket.hip.wear_laws import read_ball_law, read_wear_law
 from ballsocket.studies import LogNormal, Rectangular
 
-from ..cli.command import refusal
 from ..refusals import refused_calls
 from .hips import COUNTS, CYCLE, QUICK, SHORT, TEXT, TILTED, WEAR_DATA, K, hip, history, write_edited_file
 from .test_variability import COEFFICIENT, TIGHT, WEIGHT, variability
@@ -315,34 +313,3 @@ def test_files_of_measured_wear_that_mean_nothing_are_refused(tmp_path, old, new
         (tmp_path / f"{i}.csv").write_text(table, encoding="utf-8")
     with pytest.raises(ValueError, match=message):
         read_wear_test(write_edited_file(tmp_path, *SHORT[1:], (old, new), text=f"{TEXT}\n{WEAR_DATA}"))
-
-
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        (["a.toml", "b.toml", "--report", "ab.html"], "--report shows one hip, got 2 files"),
-        (["a.toml", "b.toml", "--patients", "4"], "--patients needs one file, got 2"),
-        (["b.toml", "--patients", "4", "--csv", "b.csv"], "--csv shows one hip: leave out --csv or --patients"),
-        (["a.toml", "a.toml"], "two files are the same"),
-        (["a.toml", "--csv", "a.txt"], "must end in .csv"),
-        (["a.toml", "--figure", "a.gif"], "must end in .png, .svg, .pdf"),
-        (["a.toml", "--report", "a.txt"], "must end in .html"),
-        (["a.toml", "--report", "missing/a.html"], "cannot write a.html"),
-        (["logo.toml", "--report", "a.html"], "logo.svg"),
-        (["wrong.toml"], "wrong.toml: .*'waer' at the top is not known"),
-        (["a.toml", "--patients", "2"], "--patients needs a table"),
-        (["b.toml", "--patients", "2", "--report", "x.html"], "one hip: leave out"),
-        (["b.toml", "--method", "runs"], "--method is the method of a cohort: add --patients, or leave out --method"),
-        (["b.toml", "--patients", "2", "--method", "all"], "method 'all' is not known"),
-    ],
-)
-def test_wrong_words_of_the_command_are_refused_in_one_line(tmp_path, words, message):
-    texts = {
-        "a": TEXT,
-        "b": f"{TEXT}\n[uncertainty]\nclearance = {{low = 0.05, high = 0.2}}\n",
-        "logo": f'{TEXT}\n[report]\nlogo = "logo.svg"\n',
-        "wrong": TEXT.replace("[wear]", "[waer]"),
-    }
-    for name, text in texts.items():
-        (tmp_path / f"{name}.toml").write_text(text, encoding="utf-8")
-    assert re.search(message, refusal("hip", *words, folder=tmp_path))

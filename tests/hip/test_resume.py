@@ -18,7 +18,7 @@ from ballsocket.hip.simulation import make_checkpoint
 
 from ..cli.command import answer
 from ..processes import stopped_program
-from .hips import QUICK, K, hip, refuses, write_edited_file
+from .hips import QUICK, SHORT, K, hip, refuses, write_edited_file
 
 WIDE = {"ring_width": radians(9.0), "cycle": iso_14242_1(16)}
 PARTS = {in_vivo("walking", 750.0, 16): 9e5, in_vivo("stairs-up", 750.0, 16): 1e5}
@@ -116,7 +116,7 @@ KILLS = int(os.environ.get("BALLSOCKET_KILLS", "8"))
 
 @pytest.mark.long
 def test_a_process_killed_at_random_changes_of_its_files_gives_the_same_json(tmp_path):
-    file = str(write_edited_file(tmp_path, ("instants = 100", "instants = 60")))
+    file = str(write_edited_file(tmp_path, *SHORT[1:]))
     words, store, draw = ("hip", file, "--store"), str(tmp_path / "store"), random.Random(20)
     expected = answer(*words, str(tmp_path / "other"))
     for _ in range(KILLS):  # each resumes what the one before has stored

@@ -206,8 +206,8 @@ def test_a_relative_uncertainty_is_a_share_of_the_fitted_value():
 @pytest.mark.long
 @pytest.mark.parametrize("counts", [(5, 5, 5, 5), (1, 2, 3, 5, 8, 12)])
 def test_bands_of_stations_cover_the_true_coefficient(counts):
-    """Station scatter 15 %, readings 5 %: as many of 60 bands of 95 % hold as in 999 of 1000 trials."""
-    use, noise, sets = hip(wear=Archard(coefficient=1e-6), **QUICK), np.random.default_rng(0), 60
+    """Station scatter 15 %, readings 5 %: as many of 30 bands of 95 % hold as in 999 of 1000 trials."""
+    use, noise, sets = hip(wear=Archard(coefficient=1e-6), **QUICK), np.random.default_rng(0), 30
     names = [str(station) for station, count in enumerate(counts) for _ in range(count)]
     covered = 0
     for _ in range(sets):
