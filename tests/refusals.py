@@ -1,4 +1,4 @@
-"""Tests of calls that are refused: one table of calls and messages each."""
+"""Tests of calls and files that are refused: tables of calls, or of edits of a file, and messages."""
 
 import pytest
 
@@ -13,3 +13,17 @@ def refused_calls(*cases, error=ValueError):
         assert "\n" not in str(refused.value)
 
     return test
+
+
+def refused_edits(path):
+    """Read tables of text: what an edit replaces in a file, by what, and words of the refusal; `\\n` ends a line."""
+    tables = [table.splitlines() for table in path.read_text("utf-8").split("\n\n")]
+    return [[tuple(cell.replace("\\n", "\n") for cell in line.split(" => ")) for line in table] for table in tables]
+
+
+def edited(text, old, new):
+    """Replace a part of a text once, or add to its end."""
+    if old == "(at the end)":
+        return f"{text}\n{new}\n"
+    assert old in text
+    return text.replace(old, new, 1)
