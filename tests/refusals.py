@@ -15,14 +15,15 @@ def refused_calls(*cases, error=ValueError):
     return test
 
 
-def refused_edits(path):
-    """Read tables of text: what an edit replaces in a file, by what, and words of the refusal; `\\n` ends a line."""
-    tables = [table.splitlines() for table in path.read_text("utf-8").split("\n\n")]
-    return [[tuple(cell.replace("\\n", "\n") for cell in line.split(" => ")) for line in table] for table in tables]
+def text_tables(path):
+    """Read tables of text, with an empty line between two; cells stand between arrows, the refusal in the last."""
+    tables = path.read_text("utf-8").rstrip("\n").split("\n\n")
+    return [[line.split(" => ") for line in table.splitlines()] for table in tables]
 
 
 def edited(text, old, new):
-    """Replace a part of a text once, or add to its end."""
+    """Replace a part of a text once, or add to its end; `\\n` ends a line."""
+    old, new = (part.replace("\\n", "\n") for part in (old, new))
     if old == "(at the end)":
         return f"{text}\n{new}\n"
     assert old in text

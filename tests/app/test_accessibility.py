@@ -12,9 +12,7 @@ from ..places import ROOT
 from .browser import AT_REST, NARROW, PICTURES, WIDE, User, opened_profile, pressure, script
 
 AXE = ROOT / "tests" / "data" / "axe" / "axe.min.js.gz"
-_VIOLATIONS = """async () => (await axe.run(document, { resultTypes: ["violations"], runOnly: ["wcag2a", "wcag2aa",
-  "wcag21a", "wcag21aa", "wcag22aa", "best-practice"] })).violations
-  .map((rule) => `${rule.id} (${rule.impact}): ${rule.nodes.map((node) => node.html.slice(0, 200)).join(" | ")}`)"""
+_VIOLATIONS = script("violations.js")
 
 WIDTHS = (390, 768, 900, 1100, 1280, 1440, 1920)
 SIX = "&".join(f"beside{number}.preset=hip-36" for number in range(1, 7))
@@ -34,12 +32,7 @@ MORE = {
     "evidence": "&ask.limits=max_pressure+<=+12+MPa",
     "wear": "&use.millions=0.1",
 }
-FITTED = """async (width) => {
-  for (let frames = 0; frames < 3; frames += innerWidth === width) await new Promise(requestAnimationFrame);
-  return document.documentElement.scrollWidth;
-}"""
-"""The width of what is on the page two frames after it has fitted its tables to a window; nothing else follows."""
-
+FITTED = script("fitted.js")
 CUT = script("cut.js")
 
 
@@ -103,12 +96,7 @@ def test_axe_finds_no_violation_in_either_size_and_theme(shown):
         assert violations(shown) == [], (width, theme)
 
 
-_REACH = """() => {
-  const element = document.activeElement;
-  if (!element || element === document.body || element.dataset.reached) return false;
-  element.dataset.reached = "yes";
-  return true;
-}"""
+_REACH = script("reach.js")
 _UNREACHED = script("unreached.js")
 
 

@@ -9,6 +9,7 @@ from base64 import b64decode
 from contextlib import closing, suppress
 from functools import partial, wraps
 from http.client import HTTPConnection
+from pathlib import Path
 from threading import Event
 from unittest.mock import Mock
 from urllib.parse import urlsplit
@@ -24,6 +25,7 @@ from ballsocket.app.jobs import PageThread, run_in_thread
 from ballsocket.app.server import HostNames
 
 from ..processes import PATIENCE
+from ..refusals import text_tables
 from .asking import read_message
 from .browser import explorer_process
 
@@ -253,31 +255,13 @@ async def test_a_message_that_is_too_large_or_no_text_ends_its_own_connection(se
     assert await other.moves_load()
 
 
-@pytest.mark.parametrize(
-    "words",
-    [
-        {"do": "__init__"},
-        {"do": "edit", "name": "__class__", "value": "x"},
-        {"do": "leave"},
-        {"do": "edit", "name": "theme", "value": "dark"},
-        {"do": "edit", "name": "press.shown", "value": "exact"},
-        {"do": "view", "value": ["press"]},
-        {"do": "edit", "name": "load.__class__", "value": 1},
-        {"do": "edit", "name": "cup." + "x" * 10_000, "value": 1},
-        {"do": "edit", "name": "load", "value": {"deep": [1e400, None]}},
-        {"do": "edit", "name": "load", "value": 1e308},
-        {"do": "edit", "name": ["load"], "value": 1},
-        {"do": "edit", "name": "load", "value": "\ud800"},
-        {"do": "edit", "name": "\ud800", "value": 1},
-        {"do": "edit", "name": "layer" + "9" * 5000, "value": 1},
-        {"do": "upload", "text": 3},
-        {"do": "upload", "text": "a=" + "[" * 90_000},
-        {"do": "open", "query": "x" * 100_000},
-        {"do": "open", "query": ["no text"]},
-        {"do": "save", "kind": "../../etc/passwd"},
-    ],
-    ids=lambda words: f"{words['do']} {str(words.get('name', ''))[:12]}",
-)
+*_, REQUESTS = text_tables(Path(__file__).parent / "refused.txt")
+REQUESTS = [json.loads(text) for (text,) in REQUESTS]
+REQUESTS += [{"do": "edit", "name": name, "value": 1} for name in ("cup." + "x" * 10_000, "layer" + "9" * 5000)]
+REQUESTS += [{"do": "upload", "text": "a=" + "[" * 90_000}, {"do": "open", "query": "x" * 100_000}]
+
+
+@pytest.mark.parametrize("words", REQUESTS, ids=lambda words: f"{words['do']} {str(words.get('name', ''))[:12]}")
 @in_loop
 async def test_unknown_actions_and_values_get_a_sentence_that_shows_no_path(served, words):
     user = await Someone(served).opened()

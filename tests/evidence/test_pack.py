@@ -22,14 +22,14 @@ from ballsocket.evidence.question import Recentred, read_question
 from ballsocket.evidence.worst_case import propagate_tolerances, wear_history, wear_rates
 
 from ..places import EXAMPLES
-from ..refusals import refused_edits
+from ..refusals import text_tables
 
 pytest.importorskip("xarray", reason="the extra for studies is not installed")
 from ballsocket.reports.evidence_page import evidence_page
 
 from .small_pack import CLEARANCE, FORCE, QUESTION_TEXT, YOUNG, question_of
 
-(REFUSED,) = refused_edits(Path(__file__).parent / "refused.txt")
+(REFUSED,) = text_tables(Path(__file__).parent / "refused.txt")
 TILTED = f"'{EXAMPLES / 'tilted_hip.toml'}'"
 REFUSED += [
     (FORCE, f"force = {list(range(1000, 2001))}", "cases of the matrix = 2002"),

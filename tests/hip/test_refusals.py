@@ -19,7 +19,7 @@ from ballsocket.hip.wear_law import wear_factor, with_coefficient
 from ballsocket.hip.wear_laws import read_ball_law, read_wear_law
 from ballsocket.studies import LogNormal, Rectangular
 
-from ..refusals import edited, refused_calls, refused_edits
+from ..refusals import edited, refused_calls, text_tables
 from .hips import QUICK, SHORT, TEXT, TILTED, WEAR_DATA, K, hip, history, write_edited_file
 from .test_variability import COEFFICIENT, TIGHT, WEIGHT, variability
 
@@ -214,7 +214,7 @@ STATION_TABLES = {
     "cycles,A [mm^3/Mc]\n1,-2\n": r"values = '-2.0 mm\^3/Mc' is not allowed: a measured wear and",
     "station,mass [mg]\nA,2\n": "the column volume is missing; the columns are station, mass",
 }
-EDITS, MEASURED = refused_edits(Path(__file__).parent / "refused.txt")
+EDITS, MEASURED = text_tables(Path(__file__).parent / "refused.txt")
 VALUES = 'values = "38 mm^3/Mc"\n'
 MEASURED += [(VALUES, f'file = "{i}.csv"\n', f"{i}.csv: {text}") for i, text in enumerate(STATION_TABLES.values())]
 
