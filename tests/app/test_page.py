@@ -11,9 +11,10 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.app import server as serve
+from ballsocket.app.long_view import LongView
 from ballsocket.app.pictures.contour_map import MapPlane
 from ballsocket.app.session import Page
-from ballsocket.app.state.screen import AXES, START, MapAxis
+from ballsocket.app.state.screen import AXES, START, VIEWS, MapAxis
 from ballsocket.app.views import design_map as map_view
 from ballsocket.app.views import map_study
 from ballsocket.app.views.contact import Press
@@ -41,6 +42,19 @@ def test_every_preset_can_be_seen_under_every_load(preset, load):
         page = Page(f"view={view}&preset={preset}&load.{load}&map_model={model}")
         assert trouble(page) == ""
         assert page.view.document(page.screen).rows()
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("view", VIEWS)
+def test_every_view_shows_a_preset_and_writes_its_files(view):
+    page = Page(f"view={view}&preset=hip-28&load.force=3000")
+    assert (page.screen.view, trouble(page)) == (view, "")
+    assert f'data-view="{view}">' in serve.page_files(None)["page.html"][1]
+    if isinstance(page.view, LongView):
+        return  # its files need a result that takes seconds
+    header, *_ = page.view.document(page.screen).rows()
+    assert saved(page, "CSV").decode("utf-8-sig").startswith(str(header[0]))
+    assert b"hip-28" in saved(page, "HTML")
 
 
 @pytest.mark.parametrize("link", ["load.force=1e-320", "view=compare&load.force=0&beside1.preset=hip-36"])

@@ -194,7 +194,7 @@ def test_two_radii_fix_a_third_and_numbers_win_over_a_named_material():
     assert (liner.young, liner.poisson) == (1000.0, 0.45)
 
 
-JOINTS, BACKINGS = text_tables(Path(__file__).parent / "refused.txt")
+JOINTS, BACKINGS, _ = text_tables(Path(__file__).parent / "refused.txt")
 LAYERS = "[[backing]]\nthickness = 1\nmaterial = 'pom'\n"
 JOINTS.append(("[joint]", 99 * LAYERS + "[joint]", "99 layers are behind the liner"))
 JOINTS.append(("[joint]", f"name = '{'a' * 2000}'\n[joint]", "name = 'a+[.]{3} must be at most 1000 characters"))

@@ -1,6 +1,8 @@
 """Tables as machines and offices write them: every form of the same three readings has the same numbers."""
 
+import json
 import tomllib
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,6 +15,7 @@ from ballsocket.hip.schema import CycleTables
 from ballsocket.identification.file import read_identify
 
 from ..cli.command import run
+from ..refusals import text_tables
 
 NAMES = ("time", "force", "indentation", "indentation_uncertainty")
 TRUTH = {"time": [0.0, 0.25, 0.5], "force": [300.0, 1250.5, 2000.0], "indentation": [0.01, 0.0255, 0.04]}
@@ -100,31 +103,13 @@ CHOSEN = [  # text, choice, force in N
     ("T;K1\n;kN\nA;0,3\n", {"columns": {"K1": "force"}, "skip": "T"}, 300.0),
     (";force_N\n1;300\n", {"skip": [""]}, 300.0),
 ]
-REFUSED = [  # text, choice, message
-    (TWO + "300;3.000\n", {}, "line 2 has 3.000, which may be 3000 or 3.000: write 3000 without a mark"),
-    (TWO + "300;3,000\n", {}, "line 2 has 3,000, which may be 3000 or 3.000: .* or 3,0000 with another"),
-    ('force_N,indentation_um\n"1,050",32\n', {}, "line 2 has 1,050, which may be 1050 or 1.050"),
-    (TWO + "0,25;1\n1.5;2\n", {}, "line 3 has a decimal point in 1.5, and line 2 a decimal comma in 0,25"),
-    ("force_N,indentation_mm\n0,5,1,5\n", {}, "line 2 has 4 cells, the line of heads 2: decimal commas and"),
-    (TWO + "1;2\n\n" + TWO + "3;4\n", {}, "several tables with these columns, in lines 1, 4: keep one"),
-    ("force_N;Weg in Zoll;T\n1;2;3\n", {}, "column 'T' is not known; known: time, .*; columns = .'T' = .*skip = .'T'."),
-    ("K1 [kN]\n3\n", {"columns": {"K1": "force_N"}}, "'force_N' for 'K1 .kN.', but the file has the unit kN"),
-    ("K1 [kN]\n3\n", {"columns": {"K1": "fors_N"}}, "columns names 'fors_N' for 'K1 .kN.'; did you mean 'force'"),
-    (TWO + "1;2\n", {"skip": ["Zeit"]}, "skip names 'Zeit', but the columns are 'force_N', 'indentation_mm'"),
-    ("Kraft [N];Weg [mm]\nkN;mm\n1;2\n", {}, "column 'Kraft .N.' has the unit kN in the line below: correct one"),
-    ("force_N;Weg\nkN;mm\n1;2\n", {}, "column 'force_N' has the unit kN in the line below: correct one"),
-    ("Force 1 [N];Force 2 [N]\n1;2\n", {}, "column 'Force 1 .N.' is not known; did you mean 'force'"),
-    (TWO + "1;2\n2;3\nAlarm;door\n4;5\n", {}, "line 4 has text between numbers: cut the lines above"),
-    ("time_s force_N\n1 2\n   3\n", {}, "line 3 has 1 cell, the line of heads 2: decimal commas and empty"),
-    ("-Force [N]\n1\n", {}, "column '-Force .N.' is not known"),
-    ("Nr.;force_N\n1;2\n2;4\nMean;3\n", {"skip": ["Nr."]}, "line 4 begins with 'Mean', and other lines with a numb"),
-    (";force_N\n1;300\n", {}, "a column of numbers has no head: name it, or skip it with skip = "),
-    (TWO + "1;2\n" + "s;N\n" + "3;4\n" * 2, {}, "line 3 has text between numbers: cut the lines above"),
-    ("", {}, "it has no line of column heads above lines of numbers"),
-    ("force_N\n" + "1\n" * 5_000_000, {}, "a table has at most 10 MB: cut it, or save it as Parquet"),
-    ("\xd0\xcf\x11\xe0", {}, "an old Excel file .*: save it as .xlsx or CSV"),
-    ("PK\x03\x04", {}, "it is not a readable .xlsx file"),
-]  # fmt: skip
+*_, REFUSED = text_tables(Path(__file__).parent / "refused.txt")
+REFUSED += [
+    ("", "{}", "it has no line of column heads above lines of numbers"),
+    ("force_N\n" + "1\n" * 5_000_000, "{}", "a table has at most 10 MB: cut it, or save it as Parquet"),
+    ("\xd0\xcf\x11\xe0", "{}", "an old Excel file .*: save it as .xlsx or CSV"),
+    ("PK\x03\x04", "{}", "it is not a readable .xlsx file"),
+]
 
 
 @pytest.mark.parametrize(("text", "choice", "force"), CHOSEN)
@@ -135,8 +120,9 @@ def test_columns_are_renamed_and_skipped(text, choice, force, tmp_path):
 
 @pytest.mark.parametrize(("text", "choice", "message"), REFUSED, ids=range(len(REFUSED)))
 def test_a_table_with_two_meanings_is_refused_with_the_way_to_write_it(text, choice, message, tmp_path):
+    text = text.replace("\\n", "\n")
     with pytest.raises(ValueError, match=f"press.csv: .*{message}"):
-        read_columns(write(tmp_path, text, "latin-1"), NAMES, HeadChoice(**choice))
+        read_columns(write(tmp_path, text, "latin-1"), NAMES, HeadChoice(**json.loads(choice)))
 
 
 def test_a_gap_has_its_line(tmp_path):

@@ -214,7 +214,7 @@ STATION_TABLES = {
     "cycles,A [mm^3/Mc]\n1,-2\n": r"values = '-2.0 mm\^3/Mc' is not allowed: a measured wear and",
     "station,mass [mg]\nA,2\n": "the column volume is missing; the columns are station, mass",
 }
-EDITS, MEASURED = text_tables(Path(__file__).parent / "refused.txt")
+EDITS, MEASURED, _ = text_tables(Path(__file__).parent / "refused.txt")
 VALUES = 'values = "38 mm^3/Mc"\n'
 MEASURED += [(VALUES, f'file = "{i}.csv"\n', f"{i}.csv: {text}") for i, text in enumerate(STATION_TABLES.values())]
 
