@@ -1,4 +1,4 @@
-"""Tests of calls and files that are refused: tables of calls, or of edits of a file, and messages."""
+"""Tests of calls and files that are refused, and tables of text: calls, edits of a file, files, and messages."""
 
 import pytest
 
@@ -21,9 +21,14 @@ def text_tables(path):
     return [[line.split(" => ") for line in table.splitlines()] for table in tables]
 
 
+def unescaped(cell):
+    """Return a cell with its ends of lines and tabs."""
+    return cell.replace("\\n", "\n").replace("\\t", "\t").replace("\\r", "\r")
+
+
 def edited(text, old, new):
-    """Replace a part of a text once, or add to its end; `\\n` ends a line."""
-    old, new = (part.replace("\\n", "\n") for part in (old, new))
+    """Replace a part of a text once, or add to its end."""
+    old, new = unescaped(old), unescaped(new)
     if old == "(at the end)":
         return f"{text}\n{new}\n"
     assert old in text
