@@ -1,4 +1,4 @@
-"""Tests of calls that are refused: one table of calls and messages each."""
+"""Tests of calls and files that are refused, and tables of text: calls, edits of a file, files, and messages."""
 
 import pytest
 
@@ -13,3 +13,23 @@ def refused_calls(*cases, error=ValueError):
         assert "\n" not in str(refused.value)
 
     return test
+
+
+def text_tables(path):
+    """Read tables of text, with an empty line between two; cells stand between arrows, the refusal in the last."""
+    tables = path.read_text("utf-8").rstrip("\n").split("\n\n")
+    return [[line.split(" => ") for line in table.splitlines()] for table in tables]
+
+
+def unescaped(cell):
+    """Return a cell with its ends of lines and tabs."""
+    return cell.replace("\\n", "\n").replace("\\t", "\t").replace("\\r", "\r")
+
+
+def edited(text, old, new):
+    """Replace a part of a text once, or add to its end."""
+    old, new = unescaped(old), unescaped(new)
+    if old == "(at the end)":
+        return f"{text}\n{new}\n"
+    assert old in text
+    return text.replace(old, new, 1)

@@ -382,8 +382,7 @@ def test_a_cycle_is_played_and_stops_where_it_is(reader):
     bar.press("Home")
     assert output.inner_text().startswith("0.5 % of the cycle: load ")
     reader.until("location.search.includes('use.instant=0')")
-    # the film follows: load, pressure, distance, two films and λ
-    reader.page.locator(".player .spot").nth(5).wait_for()
+    reader.page.locator(".player .spot").nth(2).wait_for()  # load, pressure, distance; the film follows
     smallest = reader.page.evaluate("""() => Math.min(...[...document.querySelectorAll('.courses text')].map((text) =>
         parseFloat(getComputedStyle(text).fontSize) *
         Math.hypot(text.getScreenCTM().a, text.getScreenCTM().b)))""")

@@ -111,7 +111,7 @@ def test_late_answers_are_marked_until_they_belong_to_the_inputs(browser, addres
         page = user.page
         proxy.delay = 0.4
         page.evaluate(_RECORD)
-        for number in range(18):
+        for number in range(9):
             user.nudge(("load", "clearance")[number % 2], ("ArrowRight", "ArrowLeft")[number // 3 % 2])
             page.wait_for_timeout((50, 150, 700)[number % 3])
         user.answered()

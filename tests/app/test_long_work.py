@@ -269,8 +269,6 @@ def test_a_run_answers_what_a_press_answers():
     for drawing in found.drawing.values():  # on the page: no style of its own, and ink of its theme
         assert "<style" not in drawing
         assert "var(--text)" in drawing
-    wide = until_the_end(judging(3e4, arc_of_cover=0.75))[-1].value
-    assert any("rim" in note for note in wide.notes)
     refused = until_the_end(judging(3000.0, arc_of_cover=0.75, chamfer=9.0))[-1]  # cannot be meshed
     assert isinstance(refused, RunRefused)
     assert "chamfer" in refused.why

@@ -339,16 +339,6 @@ def test_patients_whose_coefficient_scatters_make_the_band(nothing_is_known):
     assert "95 % of the predictions" in found.band
 
 
-@pytest.mark.long
-def test_the_view_of_finite_elements_shows_the_pressure_of_a_press_and_marks_it_after_a_change(at_once):
-    page = opened("view=judge&preset=hip-28&load.force=3000")
-    (row,) = (row for row in cells(page, "judge-numbers") if row[0].startswith("largest pressure ["))
-    contact = bs.FiniteElement().press(bs.joints["hip-28"], force=3000.0)
-    assert float(row[1]) == pytest.approx(contact.max_pressure, rel=1e-3)
-    edits(page, "clearance", "0.3")
-    assert "belong to earlier inputs" in told(page, "judge-earlier")
-
-
 EVIDENCE = "view=evidence&preset=hip-36&load.force=3000"
 EVIDENCE_CUP = bs.Cup(inclination=radians(40.0))
 FILE = JointFile(bs.joints["hip-36"], {"force": 3000.0})

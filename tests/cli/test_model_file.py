@@ -1,5 +1,7 @@
 """Custom models: functions as moduli, and Python files that only the command line runs."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -9,6 +11,7 @@ from ballsocket.core.sources import Source
 from ballsocket.model_catalogue import named_model
 from ballsocket.studies.file import read_study
 
+from ..refusals import text_tables
 from .command import answer, printed, refusal
 
 HIP = bs.joints["hip-28"]
@@ -59,26 +62,10 @@ def test_models_of_a_file_press_as_in_python(name, folder):
     assert custom["deviation"]["max_pressure"] == pytest.approx(custom["max_pressure"] / exact["max_pressure"] - 1)
 
 
-@pytest.mark.parametrize(
-    ("value", "message"),
-    [
-        ("own.py:nothing", "own.py has no 'nothing'; it defines: winkler, exact, broken"),
-        ("own.py:", "must be FILE.py:NAME"),
-        ("own.py:number", "own.py:number is not a model: 3.0; it must be a model, a class"),
-        ("own.py:broken", "model own.py:broken failed in line 11: AttributeError: 'Joint' object has no attribute"),
-        ("own.py:negative", "modulus negative = -1 is not allowed: a foundation modulus (MPa/mm) must be above 0"),
-        ("own.py:catalogued", "is named 'hertz', as a model of ballsocket; give it another name"),
-        ("own.py:Unfinished", "failed: TypeError: Can't instantiate abstract class Unfinished"),
-        ("own.py:Nameless", "name of own.py:Nameless must be text, got ''"),
-        ("own.py:Twice", "but the derivative of its force is 2.552e+04: correct one of them"),
-        ("own.py:Lossy", "but the derivative of its energy is 900: correct one of them"),
-        ("none.py:winkler", "none.py' does not exist"),
-        ("fails.py:x", "model file fails.py failed in line 2: ZeroDivisionError: division by zero"),
-        ("wrong.py:x", "model file wrong.py failed in line 1: SyntaxError"),
-        ("leaves.py:x", "model file leaves.py failed in line 1: SystemExit: 3"),
-        ("json.py:x", "rename json.py: its name must be new"),
-    ],
-)
+(REFUSED,) = text_tables(Path(__file__).parent / "refused_models.txt")
+
+
+@pytest.mark.parametrize(("value", "message"), REFUSED)
 def test_what_is_no_model_is_refused_in_one_sentence(value, message, folder):
     assert message in refusal("press", "hip-28", "--force", "3000", "--model", value)
 

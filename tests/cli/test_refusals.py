@@ -6,11 +6,14 @@ from pathlib import Path
 import pytest
 
 from ..places import EXAMPLES
+from ..refusals import text_tables
 from .command import refusal
 
 ABBREVIATIONS = {
-    "{wear_test}": shlex.quote(str(EXAMPLES / "wear_test.toml")),
-    "{hip}": shlex.quote(str(EXAMPLES / "hip.toml")),
+    **{f"{{{path.stem.replace('_', '-')}}}": shlex.quote(str(path)) for path in EXAMPLES.glob("*.toml")},
+    "{liner}": f"--liner {shlex.quote(str(EXAMPLES / 'planning' / 'liner.stl'))}",
+    "{head}": f"--head {shlex.quote(str(EXAMPLES / 'planning' / 'head.stl'))}",
+    "{pelvis}": f"--landmarks {shlex.quote(str(EXAMPLES / 'planning' / 'pelvis.mrk.json'))}",
     "{hip-36}": "hip-36 --force 3kN",
     "{sizes}": "--ball-radius 16 --clearance 0.1 --liner-thickness 6",
     "{export}": "--out a hip-28",
@@ -20,14 +23,13 @@ ABBREVIATIONS = {
     "{spread}": "{hip-36} --spread clearance=0.1+-0.05 --spread liner_young=700..1100",
 }
 
-REFUSED = (Path(__file__).parent / "refused.txt").read_text("utf-8")
-"""Commands, and words of the message after the arrow."""
+
+TABLES = text_tables(Path(__file__).parent / "refused.txt")
 
 
-@pytest.mark.parametrize("case", [line for line in REFUSED.splitlines() if line])
-def test_wrong_input_is_refused_in_one_line_with_the_remedy(case, tmp_path):
+@pytest.mark.parametrize(("command", "message"), [row for table in TABLES for row in table])
+def test_wrong_input_is_refused_in_one_line_with_the_remedy(command, message, tmp_path):
     (tmp_path / "file").touch()
-    command, _, message = case.partition(" => ")
     for short, long in reversed(ABBREVIATIONS.items()):
         command = command.replace(short, long)
     assert message in refusal(*shlex.split(command), folder=tmp_path)

@@ -1,9 +1,13 @@
 """Small question and its pack."""
 
+from functools import reduce
+
 from ballsocket.evidence.folder import write
 from ballsocket.evidence.pack import gather_evidence
 from ballsocket.evidence.question import read_question
 from ballsocket.reports.evidence_page import evidence_page
+
+from ..refusals import edited
 
 CLEARANCE = 'clearance = ["0.05 mm", "0.15 mm"]'
 FORCE = 'force = ["2 kN", "4 kN"]'
@@ -29,10 +33,7 @@ coefficient = 0.06
 
 
 def question_of(folder, *replacements):
-    text = QUESTION_TEXT
-    for old, new in replacements:
-        assert old in text, old
-        text = text.replace(old, new)
+    text = reduce(lambda text, change: edited(text, *change), replacements, QUESTION_TEXT)
     (folder / "asked.toml").write_text(text, encoding="utf-8")
     return read_question(folder / "asked.toml")
 

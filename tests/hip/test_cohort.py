@@ -21,13 +21,9 @@ from .test_uncertainty import short_file
 from .test_variability import COEFFICIENT, FEW_CYCLES, TIGHT, WEIGHT, variability
 
 
-def quick_variability(**distributions):
-    return variability(hip(**QUICK), **(distributions or {"clearance": TIGHT}))
-
-
-def cohort_run(n_patients, **distributions):
-    one = quick_variability(**distributions)
-    return CohortRun(variability=one, counts=(FEW_CYCLES,), values=sample_patients(one, n_patients, 0))
+def cohort_run(n_patients, patients=None, counts=(FEW_CYCLES,)):
+    patients = patients or variability(clearance=TIGHT)
+    return CohortRun(variability=patients, counts=counts, values=sample_patients(patients, n_patients, 0))
 
 
 def test_more_patients_keep_the_first_ones():
@@ -39,7 +35,7 @@ def test_more_patients_keep_the_first_ones():
 
 
 def test_a_patient_without_a_result_has_its_error_and_a_worker_of_another_version_is_refused():
-    run = cohort_run(4, tilt=Rectangular(low=0.0, high=2.0))
+    run = cohort_run(4, variability(tilt=Rectangular(low=0.0, high=2.0)))
     cohort = replace(run, values={"tilt": np.array([0.1, 1.9, 0.1])}).simulate()
     assert [bool(error) for error in cohort.refused] == [False, True, False]
     assert np.isnan(cohort.table[1]).all()
@@ -51,7 +47,7 @@ def test_a_patient_without_a_result_has_its_error_and_a_worker_of_another_versio
 
 
 def test_stored_patients_are_not_simulated_again(tmp_path, monkeypatch):
-    one, calls, finished = quick_variability(), [], []
+    one, calls, finished = variability(clearance=TIGHT), [], []
 
     def simulate(self, number):
         calls.append(number)
@@ -77,14 +73,14 @@ def test_stored_patients_are_not_simulated_again(tmp_path, monkeypatch):
 
 
 def test_another_cohort_is_refused(tmp_path):
-    one, none = quick_variability(coefficient=COEFFICIENT), tmp_path / "none"
+    one, none = variability(coefficient=COEFFICIENT), tmp_path / "none"
     with pytest.raises(ValueError, match="patients = 0 is not allowed"):
         population(one, [FEW_CYCLES], patients=0, store=cohort_store(none, one, [FEW_CYCLES], 0))
     assert not none.exists()
     cohort_store(tmp_path, one, [FEW_CYCLES], 0).create()
     cohort_store(tmp_path, one, [FEW_CYCLES], 0)
     others = [
-        (quick_variability(coefficient=LogNormal(median=K, factor=2.0)), [FEW_CYCLES], 0),
+        (variability(coefficient=LogNormal(median=K, factor=2.0)), [FEW_CYCLES], 0),
         (replace(one, body_weight=800.0), [FEW_CYCLES], 0),
         (variability(hip(**QUICK, clearance=0.2), coefficient=COEFFICIENT), [FEW_CYCLES], 0),
         (one, [2 * FEW_CYCLES], 0),
@@ -161,14 +157,14 @@ def test_the_command_prints_bands_uncut_and_reasons_of_invalid_contacts(tmp_path
 
 @pytest.mark.long
 def test_results_do_not_depend_on_the_executor():
-    run = cohort_run(40)
+    run = cohort_run(20)
     np.testing.assert_array_equal(run.simulate().table, run.simulate(Processes(workers=2)).table)
 
 
 @pytest.mark.long
 def test_a_killed_cohort_resumes(tmp_path):
     file, store = short_file(tmp_path, ("cycles = 1e4", "cycles = 1e6")), tmp_path / "store"
-    words = ["hip", str(file), "--patients", "112", "--store", str(store)]
+    words = ["hip", str(file), "--patients", "64", "--store", str(store)]
     program = stopped_program(12, ".npz")  # the fourth file has a folder and a content, but not yet its name
     subprocess.run([sys.executable, "-c", program, *words], stdout=subprocess.DEVNULL)
     times = {path.name: path.stat().st_mtime_ns for path in store.glob("*.npz")}

@@ -1,4 +1,4 @@
-"""Wear with full elasticity: the same identities, beside the springs, smooth, and stopped and gone on."""
+"""Wear with full elasticity: as the off-axis model, near the springs, smooth, and with creep."""
 
 from dataclasses import replace
 from math import radians
@@ -10,7 +10,7 @@ import ballsocket as bs
 from ballsocket.hip import iso_14242_1, logarithmic, rocking
 from ballsocket.hip.elastic_foundation import elastic_foundation
 
-from .hips import QUICK, TILTED, K, hip, report_after, socket_force
+from .hips import QUICK, TILTED, hip, report_after
 
 COARSE = radians(5.0)
 SURFACES = {"shell": bs.ClosedShell(), "cup": bs.RealCup()}
@@ -28,16 +28,6 @@ def test_first_cycle_has_the_contacts_of_the_off_axis_model(surface):
     contact = sphere.press(use.joint, force=use.cycle.force_magnitudes[largest])
     assert use.unworn.displacement[largest] == pytest.approx(contact.displacement, rel=2e-3, abs=2e-4)
     assert use.first.max_pressure == pytest.approx(contact.max_pressure, rel=1e-2)
-
-
-@pytest.mark.parametrize("surface", ["shell", pytest.param("cup", marks=pytest.mark.long)])
-def test_worn_volume_equals_the_work_of_friction_and_a_worn_bore_balances_its_loads(surface):
-    use = elastic(surface)
-    report = report_after(use, 2e5)
-    assert report.converged
-    assert report.volume == pytest.approx(1e-3 * K * report.work, rel=1e-6)
-    errors = socket_force(use.foundation, use.solve_equilibrium(report.wear.ravel())) - use.frame.loads
-    assert (np.linalg.norm(errors, axis=1) <= 1e-6 * np.linalg.norm(use.frame.loads, axis=1)).all()
 
 
 def test_elasticity_changes_volume_and_depth_slightly():

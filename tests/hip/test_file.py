@@ -20,7 +20,7 @@ from ballsocket.hip.wear_laws import read_wear_law
 from ballsocket.reports import hip_plots
 from ballsocket.reports.hip_comparison import wear_figure
 
-from ..cli.command import answer, printed
+from ..cli.command import answer, printed, refusal
 from .hips import COUNTS, QUICK, SHORT, TEXT, TILTED, hip, walked, write_edited_file
 from .test_cycle_file import write_table
 
@@ -107,7 +107,7 @@ def read_csv(path):
 def test_json_has_the_results_of_python(solved_file):
     folder, answer = solved_file
     file = read_hip(folder / "hip.toml")
-    use, history = file.use, file.use.after(file.cycles, file.report_at)
+    use, history = file.use, file.use.after(file.cycles, file.report_at, store=folder / "store")
     expected = {
         "slide_mm": use.frame.slide,
         "pressure_slide_integral_Nm": use.first.work,
@@ -150,6 +150,11 @@ def test_results_are_printed_before_the_report_fails(tmp_path, monkeypatch):
     result = CliRunner().invoke(app, words)
     assert isinstance(result.exception, OSError)
     assert json.loads(result.stdout)["history"][-1]["cycles"] == 1e4
+
+
+def test_a_missing_logo_is_refused(tmp_path):
+    file = write_edited_file(tmp_path, text=f'{TEXT}\n[report]\nlogo = "logo.svg"\n')
+    assert "logo.svg" in refusal("hip", str(file), "--report", str(tmp_path / "a.html"))
 
 
 def test_figures_show_the_results_of_the_run():

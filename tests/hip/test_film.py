@@ -86,7 +86,7 @@ def test_walking_refreshes_a_part_of_the_contact_and_its_core_settles():
 
 @pytest.mark.long
 def test_films_on_cells_of_two_widths_agree_within_their_stated_errors():
-    film, finest = (hip(ring_width=radians(width)).film() for width in (3.0, 1.5))
+    film, finest = (hip(ring_width=radians(width)).film() for width in (4.0, 2.0))
     errors = film.error + finest.error
     for name in ("central", "least"):
         assert (np.abs(getattr(film, name) / getattr(finest, name) - 1) < errors).all()

@@ -237,7 +237,7 @@ def contacts(depths, lateral=NO_LATERAL_SPRING):
 
 @pytest.mark.parametrize(
     ("depths", "lateral"),
-    [(DEPTHS, NO_LATERAL_SPRING), (DEPTHS, LATERAL), (DEPTHS[:, None] * np.array([[0.5], [1.0], [2.0]]), LATERAL)],
+    [(DEPTHS, NO_LATERAL_SPRING), (DEPTHS[:, None] * np.array([[0.5], [1.0], [2.0]]), LATERAL)],
 )
 def test_every_patient_has_the_equilibrium_of_numpy(jax, depths, lateral):
     patients = contacts(depths, lateral)

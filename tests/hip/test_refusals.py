@@ -1,8 +1,8 @@
 """Values, files and command lines of hips that are refused, each with its message."""
 
-import re
 from dataclasses import replace
 from math import inf, nan, pi, radians
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,9 +19,8 @@ from ballsocket.hip.wear_law import wear_factor, with_coefficient
 from ballsocket.hip.wear_laws import read_ball_law, read_wear_law
 from ballsocket.studies import LogNormal, Rectangular
 
-from ..cli.command import refusal
-from ..refusals import refused_calls
-from .hips import COUNTS, CYCLE, QUICK, SHORT, TEXT, TILTED, WEAR_DATA, K, hip, history, write_edited_file
+from ..refusals import edited, refused_calls, text_tables
+from .hips import QUICK, SHORT, TEXT, TILTED, WEAR_DATA, K, hip, history, write_edited_file
 from .test_variability import COEFFICIENT, TIGHT, WEIGHT, variability
 
 CUSTOM = bh.CustomWearLaw(function=lambda cycle: 1e-9 * cycle.work)
@@ -208,71 +207,6 @@ def test_a_run_by_a_custom_law_cannot_be_stored(words, tmp_path):
 
 # files
 
-NAME, INSTANTS, LAW, TILT = 'name = "iso-14242-1"', "instants = 100", 'law = "archard"', 'tilt = "30 deg"'
-JOINT = TEXT[TEXT.index("[joint]") : TEXT.index("[cup]")]
-
-EDITS = [
-    ("mm^3/(N m)", "mm^3/N", r"has the wrong unit; expected mm\^3/\(N m\)"),
-    ('coefficient = "1.066e-6 mm^3/(N m)" #', "#", "the law 'archard' needs coefficient .*such as coefficient ="),
-    (LAW, 'law = "archart"', "law 'archart' is not known; did you mean 'archard'"),
-    (LAW, 'law = "area"', "has the wrong unit; expected mm/mm, a depth over a length of sliding"),
-    (LAW, 'law = "cross-shear"', r"the law 'cross-shear' needs circular \(wear factor on a"),
-    (LAW, f"{LAW}\nfriction = 0.1", "friction belongs to the law 'energy'"),
-    (LAW, f'{LAW}\nball_coefficient = "1 mm^3/(N mm)"', "ball_coefficient = .* is 1000"),
-    ('contact = "springs"', 'contact = "spring"', "contact = 'spring' is not known; did you mean 'springs'"),
-    ('contact = "springs"', 'model = "hertz"', "the model 'hertz' has no radial springs; models with springs:"),
-    (JOINT, 'joint = "hip-28"\n[liner]\nyoung = 3\n', r"joint = 'hip-28' is a whole joint: \[liner\] belongs to a"),
-    (NAME, f'{NAME}\nfile = "x.csv"', "needs either a name or a file"),
-    (NAME, 'name = "walking"\nmismatch = 4', "'mismatch' with the name 'walking' in .cycle."),
-    (NAME, "file = []", r"file = \[\] names no table"),
-    (NAME, 'file = [""]', "names no table"),
-    (NAME, 'file = "a.csv"\nforce = "2 N"', "'force' with a file in .cycle. is not known"),
-    (INSTANTS, "instants = 100\ntimes_body_weight = 2", "times_body_weight needs a body_weight"),
-    (CYCLE, f"{CYCLE}[[activity]]\nname = 'walking'\n", r"both \[cycle\] and \[\[activity\]\]: remove one"),
-    (CYCLE, "[activity]\nname = 'walking'\n", r"must be an array of tables: \[\[activity\]\]"),
-    (CYCLE, "[[activity]]\nname = 'flexion'\n", r"needs either per_year \(cycles a year\) or share"),
-    (CYCLE, "[[activity]]\nname = 'flexion'\nper_year = 2\nshare = 1\n", "needs either per_year"),
-    (CYCLE, "[[activity]]\nname = 'flexion'\nshare = 1\n", "share needs cycles_per_year at the top of the file"),
-    (CYCLE, "[[activity]]\nper_year = 1\n", r"\[\[activity\]\] needs either a name or a file; names: iso-14242-1"),
-    (COUNTS, "years = 3\n", "years needs activities with counts a year"),
-    ("flexion, adduction", "flexion, flexion", "rotation_order = 'flexion, flexion, rotation' is not allowed"),
-    (TILT, 'tilt = "90.1 deg"', "tilt = 90.1 is not allowed: a cup's tilt from the load is 0 to 90 degrees"),
-    (TILT, 'tilt = "-1 deg"', "a cup's tilt from the load is 0 to 90 degrees"),
-    (TILT, f'{TILT}\ninclination = "30 deg"', "tilt and inclination exclude each other"),
-    ("180 deg", "55 deg", r"dislocated at 0\.5 % of the cycle: .*30\.0° from the dome's pole.* ends at 27\.5°"),
-    ("cycles = 5e6", 'cycles = "many"', "cycles = 'many' must be a number, such as 5e6"),
-    ("report_at = [1e6, 2e6, 5e6]", "report_at = 1e6", "report_at = 1000000.0 must be a list"),
-    ("clearance = ", "clearence = ", "'clearence' in .joint. is not known; did you mean 'clearance'"),
-]
-
-TABLES = [
-    ('[creep]\nlaw = "log"', "creep law 'log' is not known; did you mean 'logarithmic'"),
-    ('[creep]\nlaw = "logarithmic"\ntimes = [1]', "times belongs to the law 'kelvin-voigt'"),
-    ("[creep]\ntimes = [1]", "the law 'kelvin-voigt' needs compliances .*, such as compliances = .0.001, 0.002."),
-    ('[creep]\nconfinement = "walls"', "confinement = 'walls' is not known"),
-    ("[creep]\nseconds_per_cycle = 0", "seconds_per_cycle = 0 is not allowed"),
-]
-
-UNCERTAIN = [
-    ("clearance = { mean = '0.1 mm' }", r"clearance = .* must be \{low, high\}, \{mean, deviation\}"),
-    ("clearance = { low = '0.1 kN', high = '0.2 mm' }", "clearance.low = '0.1 kN' is not a length"),
-    ("clearance = { low = 0.2, high = 0.1 }", "clearance.low = 0.2 is not allowed: it is finite and below high"),
-    ("clearance = { low = '0.3 mm', high = '0.5 mm' }", "clearance = 0.1 mm lies outside its tolerance of 0.3 to 0.5"),
-    ("coefficient = { median = 1e-6, factor = 0.5 }", "coefficient.factor = 0.5 is not allowed: a factor of one"),
-    ("coefficient = { median = 1e-5, factor = 1.1 }", "coefficient = 1.066e-06 lies outside its tolerance"),
-    ("weight = { low = 1, high = 2 }", "'weight' in .uncertainty. is not known"),
-    ("wear = { low = 1, high = 2 }", "separate table, .wear.; of its keys this table has 'coefficient'"),
-    ("viscosty = { low = 1, high = 2 }", "did you mean 'viscosity' in .film."),
-    ("body_weight = { low = '70 kg', high = '90 kg' }", "body_weight.low = '70 kg' is not a force"),
-    ("cycles_per_year = { low = -2, high = 1 }", "the median of cycles_per_year = -0.5 is not allowed"),
-    ("inclination = { low = 70, high = 80 }", "inclination = .* lies outside its tolerance"),
-    ("count = true\ntilt = { low = 0, high = 9 }", "count = True is not allowed: a whole number"),
-    ("count = 2.5\ntilt = { low = 0, high = 9 }", "count = 2.5 is not allowed: a whole number"),
-    ("seed = 1048577\ntilt = { low = 0, high = 9 }", "seed = 1048577 is not allowed"),
-    ("seed = -1\ntilt = { low = 0, high = 9 }", "seed = -1 is not allowed: a whole number from 0"),
-]
-
-VALUES = 'values = "38 mm^3/Mc"\n'
 STATION_TABLES = {
     "cycles,A\n1,2\n": r"the column 'A' has no unit: write 'A \[mg\]'",
     "cycles,A [mm^3/Mc]\n1,2\n2,x\n": "line 3 has 'x' under 'A ",
@@ -280,69 +214,20 @@ STATION_TABLES = {
     "cycles,A [mm^3/Mc]\n1,-2\n": r"values = '-2.0 mm\^3/Mc' is not allowed: a measured wear and",
     "station,mass [mg]\nA,2\n": "the column volume is missing; the columns are station, mass",
 }
-MEASURED = [
-    ('rate = "mean"\nto = 2e5\n', "", r"'38 mm\^3/Mc' is a rate: state its kind, rate = 'initial'"),
-    ("/Mc", "", r"'38 mm\^3' of a rate needs a unit such as '38 mm\^3/Mc'"),
-    ("/Mc", "/year", "is per year: state cycles_per_year at the top of the file"),
-    ("38 mm^3/Mc", "38 mm/Mc", r"must be a number with mm\^3 or a unit"),
-    ('values = "38 mm^3/Mc"\n', "", "needs its values"),
-    ('quantity = "volume"\n', "", "needs its quantity"),
-    (WEAR_DATA, "", "no measured wear: add "),
-    (VALUES, 'unit = "mg"\n' + VALUES, "unit belongs to a file"),
-    (VALUES, 'skip = "T"\n' + VALUES, "columns and skip belong to a file"),
-    (VALUES, 'station = ["A", "B"]\n' + VALUES, "station has 2 names for 1 value:"),
-    ('"volume"', '"mass"', "a mass needs the density of the worn material"),
-    (VALUES, 'density = "0.94 g/cm^3"\n' + VALUES, "density belongs to quantity = 'mass'"),
-    *((VALUES, f'file = "{i}.csv"\n', f"{i}.csv: {text}") for i, text in enumerate(STATION_TABLES.values())),
-    ("volume", "volum", "quantity 'volum' is not known; did you mean 'volume'"),
-]
+EDITS, MEASURED, _ = text_tables(Path(__file__).parent / "refused.txt")
+VALUES = 'values = "38 mm^3/Mc"\n'
+MEASURED += [(VALUES, f'file = "{i}.csv"\n', f"{i}.csv: {text}") for i, text in enumerate(STATION_TABLES.values())]
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "message"),
-    [*EDITS, *(("", *case) for case in TABLES), *(("", f"[uncertainty]\n{line}", text) for line, text in UNCERTAIN)],
-)
+@pytest.mark.parametrize(("old", "new", "message"), EDITS)
 def test_wrong_files_are_refused_with_their_name(tmp_path, old, new, message):
-    edits = [(old, new)] if old else []
-    file = write_edited_file(tmp_path, *edits, text=TEXT if old else f"{TEXT}\n{new}\n")
     with pytest.raises(ValueError, match=f"hip.toml: .*{message}"):
-        read_hip(file)
+        read_hip(write_edited_file(tmp_path, text=edited(TEXT, old, new)))
 
 
-@pytest.mark.parametrize(("old", "new", "message"), MEASURED)
+@pytest.mark.parametrize(("old", "new", "message"), [*MEASURED, (WEAR_DATA, "", "no measured wear: add ")])
 def test_files_of_measured_wear_that_mean_nothing_are_refused(tmp_path, old, new, message):
     for i, table in enumerate(STATION_TABLES):
         (tmp_path / f"{i}.csv").write_text(table, encoding="utf-8")
     with pytest.raises(ValueError, match=message):
-        read_wear_test(write_edited_file(tmp_path, *SHORT[1:], (old, new), text=f"{TEXT}\n{WEAR_DATA}"))
-
-
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        (["a.toml", "b.toml", "--report", "ab.html"], "--report shows one hip, got 2 files"),
-        (["a.toml", "b.toml", "--patients", "4"], "--patients needs one file, got 2"),
-        (["b.toml", "--patients", "4", "--csv", "b.csv"], "--csv shows one hip: leave out --csv or --patients"),
-        (["a.toml", "a.toml"], "two files are the same"),
-        (["a.toml", "--csv", "a.txt"], "must end in .csv"),
-        (["a.toml", "--figure", "a.gif"], "must end in .png, .svg, .pdf"),
-        (["a.toml", "--report", "a.txt"], "must end in .html"),
-        (["a.toml", "--report", "missing/a.html"], "cannot write a.html"),
-        (["logo.toml", "--report", "a.html"], "logo.svg"),
-        (["wrong.toml"], "wrong.toml: .*'waer' at the top is not known"),
-        (["a.toml", "--patients", "2"], "--patients needs a table"),
-        (["b.toml", "--patients", "2", "--report", "x.html"], "one hip: leave out"),
-        (["b.toml", "--method", "runs"], "--method is the method of a cohort: add --patients, or leave out --method"),
-        (["b.toml", "--patients", "2", "--method", "all"], "method 'all' is not known"),
-    ],
-)
-def test_wrong_words_of_the_command_are_refused_in_one_line(tmp_path, words, message):
-    texts = {
-        "a": TEXT,
-        "b": f"{TEXT}\n[uncertainty]\nclearance = {{low = 0.05, high = 0.2}}\n",
-        "logo": f'{TEXT}\n[report]\nlogo = "logo.svg"\n',
-        "wrong": TEXT.replace("[wear]", "[waer]"),
-    }
-    for name, text in texts.items():
-        (tmp_path / f"{name}.toml").write_text(text, encoding="utf-8")
-    assert re.search(message, refusal("hip", *words, folder=tmp_path))
+        read_wear_test(write_edited_file(tmp_path, *SHORT[1:], text=edited(f"{TEXT}\n{WEAR_DATA}", old, new)))

@@ -37,16 +37,24 @@ def test_millions_of_cycles_equal_an_independent_program(run):
         assert report.max_pressure == pytest.approx(expected["p0"], rel=2e-2)
 
 
-@pytest.mark.parametrize("words", [{"liner": inf}, {"diameter": 36.0}, {"clearance": 0.3}, {"cycle": flexion(16)}])
+COARSE = {"cycle": iso_14242_1(50), "ring_width": radians(5.0)}
+HIPS = [{"liner": inf}, {"diameter": 36.0}, {"clearance": 0.3}, {"cycle": flexion(16)}]
+HIPS.append(COARSE | {"surface": bs.ClosedShell()})
+HIPS.append(pytest.param(COARSE | {"surface": bs.RealCup()}, marks=pytest.mark.long))
+
+
+@pytest.mark.parametrize("words", HIPS)
 def test_worn_volume_equals_the_work_of_friction_and_a_worn_bore_balances_its_loads(words):
     use = hip(**QUICK | words)
-    report = report_after(use, 1e6)
+    report = report_after(use, 2e5 if "surface" in words else 1e6)
+    assert report.converged
     areas = np.broadcast_to(use.grid.areas, report.wear.shape) * use.joint.socket_radius**2
     assert (report.wear * areas).sum() == pytest.approx(1e-3 * K * report.work, rel=1e-6)
     assert report.volume == pytest.approx((report.wear * areas).sum(), rel=1e-12)
     worn = use.solve_equilibrium(report.wear.ravel())
-    assert socket_force(use.foundation, worn) == pytest.approx(use.frame.loads, abs=1e-6 * 300)
-    assert worn.pressure.max() == pytest.approx(report.max_pressure, rel=1e-6)
+    errors = socket_force(use.foundation, worn) - use.frame.loads
+    assert (np.linalg.norm(errors, axis=1) <= 1e-6 * np.linalg.norm(use.frame.loads, axis=1)).all()
+    assert worn.pressure.max() == pytest.approx(report.max_pressure, rel=1e-5)
 
 
 def test_worn_bore_has_the_contact_of_the_off_axis_model():

@@ -22,6 +22,7 @@ from ..cli.command import refusal, run
 from ..extent import some
 from ..places import EXAMPLES, symlink_or_skip
 from ..processes import is_running, wait_until
+from ..refusals import text_tables
 
 COMMANDS = load_commands()
 PRESS = {"joint": "hip-36", "force": "3 kN"}
@@ -40,33 +41,15 @@ def test_a_tool_describes_its_arguments_with_units_and_offers_no_file_to_write(n
     assert name != "press" or all(unit in properties[number]["description"] for number, unit in units.items())
 
 
-@pytest.mark.parametrize(
-    ("name", "arguments", "message"),
-    [
-        ("pres", {}, "tool 'pres' is not known; did you mean 'press'"),
-        ("press", {**PRESS, "figure": "x.png"}, "'figure' in a call of press is not known"),
-        ("press", {**PRESS, "force": True}, "force = True must be text with a unit, or a number"),
-        ("press", {**PRESS, "force": float("nan")}, "force = nan must be finite"),
-        ("press", {**PRESS, "force": "3\nkN"}, "must be one line of at most 300 characters"),
-        ("press", {**PRESS, "model": ["exact"] * 51}, "model has 51 values: at most 50"),
-        ("press", {**PRESS, "joint": "../hip.toml"}, "'../hip.toml' lies outside the folder of this server"),
-        ("press", {**PRESS, "joint": "/etc/passwd"}, "'/etc/passwd' lies outside the folder of this server"),
-        ("optimise", PRESS, "vary is missing"),
-        ("study", {}, "either a file is needed, or content: TOML about a study"),
-        ("study", {"file": "no.toml"}, "'no.toml' does not exist in the folder"),
-        ("study", {"content": "joint = 'hip-28'\nstore = 'x'"}, "store is not for this server"),
-        ("study", {"file": 3}, "file = 3 must be text"),
-        ("study", {"content": 3}, "content = 3 must be text in TOML, or an object"),
-        ("study", {"content": {"joint": None}}, "content has null or a key that is not text"),
-        ("study", {"content": {"joint": "hip-28", "store": "x"}}, "store is not for this server"),
-        ("study", {"content": "joint = 'hip-28'\n[engine]\nkind = 'dask'"}, "engine is not for this server"),
-        ("study", {"content": "joint = "}, "is not TOML"),
-        ("identify", {"content": "x" * 100_001}, "the content is larger than 100000 bytes"),
-    ],
-)
+(CALLS,) = text_tables(Path(__file__).parent / "refused.txt")
+CALLS.append(("press", json.dumps({**PRESS, "model": ["exact"] * 51}), "model has 51 values: at most 50"))
+CALLS.append(("identify", json.dumps({"content": "x" * 100_001}), "the content is larger than 100000 bytes"))
+
+
+@pytest.mark.parametrize(("name", "arguments", "message"), CALLS)
 def test_a_wrong_call_is_refused_with_the_reason(name, arguments, message, tmp_path):
     with pytest.raises(ValueError, match=message):
-        command_line(name, arguments, tmp_path)
+        command_line(name, json.loads(arguments), tmp_path)
 
 
 def test_the_command_line_of_a_call_is_that_of_a_shell(tmp_path):
