@@ -34,7 +34,7 @@ def random_joint(seed):
 LINERS = product((100.0, 1.0), (bs.Material(young=1000.0, poisson=poisson) for poisson in (0.0, 0.499)))
 CORNERS = [bs.Joint(ball_radius=19.9, clearance=0.1, liner_thickness=size, liner=liner) for size, liner in LINERS]
 STEEL_BALL = HIP.replace(liner=bs.Material(young=2000.0, poisson=0.4))
-JOINTS = [HIP, STEEL_BALL, *CORNERS, *(random_joint(seed) for seed in range(either(quick=12, long=300)))]
+JOINTS = [HIP, STEEL_BALL, *CORNERS, *(random_joint(seed) for seed in range(either(quick=12, long=100)))]
 
 
 def check_against_single_solutions(model, joint, kind):

@@ -68,6 +68,19 @@ def forward(*data, names=("clearance", "liner_young"), model=MODEL):
     return ForwardModel(model, JOINT, data, names)
 
 
+@pytest.mark.parametrize("quantity", ["force", "area"])
+def test_loads_read_by_a_compliant_machine_are_corrected_exactly(quantity):
+    """Newton's method finds the force whose reading is the measured indentation."""
+    machine, force = Machine(compliance=8e-6, offset=-0.004, drift=3e-4), np.array([300.0, 1200.0, 2500.0])
+    contact = MODEL.press(JOINT.replace(clearance=0.08, liner=bs.Material(young=900.0, poisson=0.4)), force=force)
+    reading = contact.indentation + 8e-6 * force - 0.004 + 3e-4 * np.arange(3.0)
+    values = 1.1 * getattr(contact, quantity)  # a measured force is the start of the iterations
+    data = Measured(quantity=quantity, values=values, uncertainty=1.0, indentation=reading, machine=machine)
+    tolerance = 3e-8 if quantity == "force" else 3e-5
+    results = forward(data).results_at(np.array([[0.08, 900.0]]))[0]
+    np.testing.assert_allclose(results, getattr(contact, quantity), rtol=tolerance)
+
+
 @pytest.mark.parametrize(("quantity", "compliance"), [("force", 0.0), ("area", 1e-6)])
 def test_a_value_of_zero_is_read_below_the_zero_of_the_machine(quantity, compliance):
     machine = Machine(offset=0.002, compliance=compliance)
