@@ -3,14 +3,14 @@
 import copy
 import pickle
 from itertools import product
-from math import exp, isnan, nan
+from math import exp
 
 import numpy as np
 import pytest
 
 import ballsocket as bs
 from ballsocket.contact import joint_curve
-from ballsocket.contact.octave_curve import derivatives_at, derivatives_of_array, fit_octave_curve
+from ballsocket.contact.octave_curve import derivatives_at, fit_octave_curve
 
 from ..extent import either
 from ..joints import HIP
@@ -34,7 +34,7 @@ def random_joint(seed):
 LINERS = product((100.0, 1.0), (bs.Material(young=1000.0, poisson=poisson) for poisson in (0.0, 0.499)))
 CORNERS = [bs.Joint(ball_radius=19.9, clearance=0.1, liner_thickness=size, liner=liner) for size, liner in LINERS]
 STEEL_BALL = HIP.replace(liner=bs.Material(young=2000.0, poisson=0.4))
-JOINTS = [HIP, STEEL_BALL, *CORNERS, *(random_joint(seed) for seed in range(either(quick=12, long=300)))]
+JOINTS = [HIP, STEEL_BALL, *CORNERS, *(random_joint(seed) for seed in range(either(quick=12, long=100)))]
 
 
 def check_against_single_solutions(model, joint, kind):
@@ -110,17 +110,3 @@ def test_a_power_law_and_a_smooth_law_are_reproduced(n, rate):
         assert found[0] == pytest.approx(expected[0], rel=1e-9)
         assert found[1] == pytest.approx(expected[1], rel=1e-7)
         assert found[2] == pytest.approx(expected[2], rel=1e-5, abs=1e-5 * force / d**2)
-
-
-def test_a_curve_is_zero_at_zero_and_nan_beyond_its_end_and_its_integral_exact_for_a_power_law():
-    """The integral of d^1.5 is d^2.5/2.5, also below the curve; arrays have the same values as numbers."""
-    numbers = fit_octave_curve(lambda d: d[None], 1e-4, 2.0).plain_numbers
-    assert derivatives_at(0.0, *numbers) == derivatives_at(-1.0, *numbers) == (0.0, 0.0, 0.0)
-    assert derivatives_at(2.0, *numbers)[0] == pytest.approx(2.0)
-    assert all(map(isnan, derivatives_at(2.0 * (1 + 1e-15), *numbers) + derivatives_at(nan, *numbers)))
-    curve = fit_octave_curve(lambda d: d[None] ** 1.5, 1e-3, 1.0).integral()
-    depths = np.array([1e-5, 0.9e-3, 1e-3, 1.1e-3, 0.02, 0.7, 1.0])
-    from_numbers = np.array([derivatives_at(depth, *curve.plain_numbers) for depth in depths.tolist()]).T
-    np.testing.assert_allclose(from_numbers, [depths**2.5 / 2.5, depths**1.5, 1.5 * depths**0.5], rtol=1e-7)
-    np.testing.assert_allclose(derivatives_of_array(depths, curve), from_numbers, rtol=1e-12)
-    assert np.isnan(derivatives_of_array(np.array([1.0001, nan]), curve)).all()

@@ -9,7 +9,6 @@ import pytest
 import ballsocket as bs
 from ballsocket.contact.law import CurveLaw
 
-from ..extent import either
 from ..joints import HIP
 from ..refusals import refused_calls
 
@@ -21,7 +20,7 @@ LAWS = [
     for name, joint in {"hip": HIP, "wide": WIDE}.items()
     for key, model in bs.catalogue.items()
 ]
-POINTS = either(quick=60, long=190)
+POINTS = 60
 
 
 @cache

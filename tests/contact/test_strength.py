@@ -2,7 +2,7 @@
 
 import re
 from dataclasses import replace
-from math import inf, isnan, nan, radians
+from math import inf, nan, radians
 from types import SimpleNamespace
 
 import numpy as np
@@ -37,16 +37,6 @@ def test_ratio_of_the_ball_is_that_of_hertz(poisson):
     z = np.linspace(0.0, 2.0, 4001)[1:]
     axial, lateral = 1 / (1 + z**2), (1 + poisson) * (1 - z * np.arctan(1 / z)) - 0.5 / (1 + z**2)
     assert strength.ball_stress_ratio(poisson) == pytest.approx(np.max(abs(axial - lateral)), rel=0.02)
-
-
-def test_utilisation_is_the_larger_of_liner_and_ball():
-    ball = strength.ball_stress_ratio(0.3)
-    assert strength.utilisation(joint_of(20.0), 5.0, 10.0) == 0.25
-    assert strength.utilisation(joint_of(None, 200.0), 5.0, 10.0) == pytest.approx(ball * 10.0 / 200.0)
-    assert strength.utilisation(joint_of(20.0, 200.0), 5.0, 10.0) == 0.25
-    assert strength.utilisation(joint_of(20.0, 2.0), 5.0, 10.0) == pytest.approx(ball * 10.0 / 2.0)
-    assert isnan(strength.utilisation(joint_of(), 5.0, 10.0))
-    assert strength.joint_ball_stress_ratio(replace(HIP, ball=None)) == 0.0
 
 
 def test_the_error_of_the_stress_grows_beyond_the_table_and_with_elastic_partners():
@@ -108,7 +98,7 @@ def test_models_that_solve_for_stresses_report_the_largest(model):
 def test_the_tabulated_ratio_is_the_exact_one_within_its_error():
     """Half angles of 0.3 to 85°, ν of 0 to 0.4993 crowded towards 1/2, R2/L of 0 to 20.5."""
     random = np.random.default_rng(8)
-    for _ in range(either(15, 100)):
+    for _ in range(either(15, 40)):
         angle, nu = radians(random.uniform(0.3, 85.0)), poisson_at(random.uniform())
         joint = joint_with(nu, thickness_ratio_at(random.uniform()))
         contact = bs.Exact(tolerance=1e-4).press(joint, half_angle=angle)
@@ -121,20 +111,6 @@ def test_the_tabulated_ratio_is_the_exact_one_within_its_error():
 def joint_with(poisson, ratio, radius=18.0):
     liner = bs.Material(young=1000.0, poisson=float(poisson), yield_stress=20.0)
     return bs.Joint(ball_radius=radius - 0.1, clearance=0.1, liner_thickness=radius / ratio, liner=liner)
-
-
-def test_the_tabulated_ratio_has_one_value_for_numbers_and_arrays_of_any_library():
-    from array_api_strict import asarray
-
-    angle, nu, ratio = np.array([0.0, 0.01, 0.5, 1.2, nan]), np.array([0.0, 0.3, 0.46, 0.499, 0.3]), 6.0
-    values = von_mises_ratio(angle, nu, ratio)
-    assert [von_mises_ratio(*numbers, ratio) for numbers in zip(angle[:4].tolist(), nu.tolist(), strict=False)] == (
-        pytest.approx(values[:4].tolist(), rel=1e-12)
-    )
-    np.testing.assert_allclose(np.asarray(von_mises_ratio(asarray(angle), asarray(nu), ratio)), values, rtol=1e-12)
-    assert isnan(values[4])
-    z = np.linspace(0.3, 0.7, 4001)  # Hertz on a half-space of ν 0
-    assert values[0] == pytest.approx(np.max(1.5 / (1 + z**2) - 1 + z * np.arctan(1 / z)), rel=1e-4)
 
 
 @pytest.mark.parametrize("model", [bs.Tabulated(), bs.Refined(), bs.Sphere(), bs.Exact()], ids=lambda model: model.name)

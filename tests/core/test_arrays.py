@@ -85,32 +85,6 @@ def test_plain_numbers_are_numbers_without_a_library():
     assert not any(map(arrays.is_plain_number, (np.ones(1), "1", np.float32(1.0))))
 
 
-def test_gradients_of_roots_and_powers_are_zero_at_zero():
-    jax = pytest.importorskip("jax")
-    assert jax.grad(arrays.sqrt)(0.0) == 0.0
-    assert jax.grad(lambda x: arrays.power(x, 0.5))(0.0) == 0.0
-    assert jax.grad(arrays.sqrt)(4.0) == pytest.approx(0.25)
-    assert jax.grad(lambda x: arrays.power(x, 1.5))(4.0) == pytest.approx(3.0)
-    assert float(arrays.sqrt(jax.numpy.asarray(0.0))) == 0.0
-    assert float(arrays.power(jax.numpy.asarray(0.0), 0.5)) == 0.0
-
-
-def test_traced_values_are_unknown():
-    jax = pytest.importorskip("jax")
-    seen = {}
-
-    @jax.jit
-    def traced(x):
-        seen["values"] = arrays.concrete_values(x)
-        seen["truth"] = arrays.all_true(x > 0)
-        return arrays.stop_gradient(x) * x
-
-    assert traced(3.0) == 9.0
-    assert seen == {"values": None, "truth": None}
-    assert jax.grad(traced)(3.0) == 3.0
-    assert arrays.concrete_values(np.ones(2)).tolist() == [1.0, 1.0]
-
-
 def test_the_series_of_a_short_sine_is_accurate_to_rounding():
     x = np.linspace(-0.75, 0.75, 3001)
     np.testing.assert_allclose(arrays.short_sine(x), np.sin(x), rtol=3e-16)

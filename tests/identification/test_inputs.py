@@ -154,15 +154,3 @@ def test_distributions_are_searched_within_eight_standard_deviations_of_allowed_
     assert (cut.low, cut.high) == (850.0, 1000.0)
     assert unknown_of("liner_young", Normal(mean=900.0, deviation=300.0)).low == pytest.approx(0.9)
     assert unknown_of("liner_poisson", Normal(mean=0.45, deviation=0.02)).high == 0.5
-
-
-def test_a_physical_limit_is_an_end_beyond_which_no_value_is_allowed():
-    compliance, offset = collect_unknowns({}, [Machine(compliance=(0.0, 1e-5), offset=(0.0, 0.01))], MODEL)
-    low = compliance.to_scale(0.0) / compliance.prior_deviation
-    assert compliance.is_physical(-1, low)
-    assert not compliance.is_physical(-1, low + 1e-3)
-    assert not compliance.is_physical(1, compliance.high / compliance.prior_deviation)
-    assert not offset.is_physical(-1, 0.0)  # which may be negative
-    poisson = unknown_of("liner_poisson", (0.3, 0.5))
-    assert poisson.is_physical(1, 0.5 / poisson.prior_deviation)
-    assert not POISSON.is_physical(1, 0.48 / POISSON.prior_deviation)

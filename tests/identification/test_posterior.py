@@ -1,7 +1,5 @@
 """Models of scatter against SciPy, convergence of Markov chains, and a posterior with a closed form."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from scipy import stats
@@ -9,7 +7,7 @@ from scipy.integrate import quad
 
 import ballsocket as bs
 from ballsocket.identification import HeavyTailed, Measured, NormalScatter
-from ballsocket.identification.posterior import CONVERGED, Posterior, _autocorrelation_time, _r_hat
+from ballsocket.identification.posterior import _autocorrelation_time, _r_hat
 from ballsocket.studies import Normal
 
 
@@ -38,19 +36,6 @@ def test_r_hat_compares_halves_of_the_ensembles():
     assert _r_hat(alike) == pytest.approx(1.0, abs=2e-3)
     alike[1] += 1.0
     assert _r_hat(alike) > 1.05
-
-
-def test_the_band_of_samples_is_their_central_interval():
-    samples = np.stack([np.linspace(0.0, 1.0, 1001), np.linspace(5.0, 3.0, 1001)], axis=1)
-    ones = {"a": 1.0, "b": CONVERGED}
-    result = Posterior(("a", "b"), samples, 0.4, ones, ones, ones)
-    assert result.band("b", 0.5) == pytest.approx((3.5, 4.5))
-    assert result.median("b") == pytest.approx(4.0)
-    assert result.converged
-    assert not replace(result, r_hat={**ones, "a": CONVERGED + 1e-6}).converged
-    assert result.summary()["samples"] == 1001
-    expected = {"name": "a", "median": 0.5, "low": 0.025, "high": 0.975}
-    assert result.summary()["estimates"][0] == pytest.approx(expected, abs=1e-9)
 
 
 def test_the_posterior_of_a_number_follows_from_its_prior_and_a_value():

@@ -1,13 +1,12 @@
 """Notes, summary, curves and sensitivities of a result; candidates for the next measurement; synthetic data."""
 
 from dataclasses import replace
-from math import log2, sqrt
 
 import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.identification import HeavyTailed, Machine, Measured, NormalScatter
+from ballsocket.identification import Machine, Measured
 from ballsocket.identification.bands import Trials, draw_data_sets, trials
 from ballsocket.identification.experiment import Candidate, Experiment, Gain, experiment, standard_candidates
 from ballsocket.identification.result import von_neumann_ratio
@@ -175,21 +174,6 @@ def test_a_candidate_is_the_next_reading_of_the_machine():
     assert (half_angle.machine.name, half_angle.order) == ("", 0.0)
 
 
-@pytest.mark.parametrize(("scatter", "weight"), [(NormalScatter(), 1.0), (HeavyTailed(), 5 / 7)])
-def test_the_gain_of_one_unknown_is_half_the_logarithm_of_the_growth(scatter, weight):
-    result = identified(measured(), scatter=scatter)
-    (gain,) = experiment(result, [Candidate("half_angle", 0.004, 1500.0)]).gains
-    theta = result.best.theta[0] + 1e-4 * np.array([1.0, -1.0])
-    joints = [JOINT.replace(clearance=value) for value in result.transform.to_values(theta[:, None])[:, 0]]
-    above, below = (MODEL.press(joint, force=1500.0).half_angle for joint in joints)
-    growth = 1 + weight * ((above - below) / 2e-4 / 0.004) ** 2 * result.information.covariance[0, 0]
-    assert gain.bits == pytest.approx(log2(growth) / 2, rel=1e-4)
-    assert gain.uncertainty_ratio["clearance"] == pytest.approx(1 / sqrt(growth), rel=1e-4)
-    assert gain.identifies == ()
-    stated = {"quantity": "half_angle", "force": 1500.0, "uncertainty": 0.004}
-    assert gain.summary() == {**stated, "bits": gain.bits, "left": gain.uncertainty_ratio}
-
-
 def test_gains_are_in_descending_order_without_candidates_that_have_no_result():
     depth = bs.Tabulated().press(JOINT, force=FORCE).indentation
     data = Measured(quantity="indentation", values=depth, uncertainty=2e-4, force=FORCE)
@@ -204,13 +188,6 @@ def test_gains_are_in_descending_order_without_candidates_that_have_no_result():
 
 def gain(quantity, bits, identifies=()):
     return Gain(Candidate(quantity, 1.0), bits, {}, identifies)
-
-
-def test_sufficient_quantities_identify_every_unidentifiable_unknown():
-    free_play, both = gain("diametral_clearance", 3.0, ("a", "b")), gain("indentation", 1.0, ("b", "a"))
-    gains = (free_play, gain("indentation", 2.0, ("a",)), both, gain("max_pressure", 1.0, ("b",)))
-    assert Experiment(gains, ("a", "b")).sufficient_quantities == ("indentation", "diametral_clearance")
-    assert Experiment(gains, ()).sufficient_quantities == ()
 
 
 def test_trials_have_coverage_and_bias_and_repeat_with_their_seed():

@@ -61,31 +61,22 @@ def test_a_tilted_load_in_a_real_cup_confirms_the_wave():
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(
-    ("tilt", "spin", "film"),
-    [
-        (56.0, (0.0, 10.0, 0.0), 464.0),
-        (56.0, (0.0, -10.0, 0.0), 422.0),
-        (45.0, spin_towards_rim(45.0, 10.0), 466.5),
-    ],
-)
-def test_a_near_rim_starves_the_inlet_but_not_the_outlet(tilt, spin, film):
-    """At 56° the rim is 0.2 mm from the contact, at 45° 10°: limits of finer meshes (467.4, 465.5) in nm."""
-    found = bs.film(press(tilt), spin=spin, method="reynolds")
+@pytest.mark.parametrize(("rate", "film"), [(10.0, 464.0), (-10.0, 422.0)])
+def test_a_near_rim_starves_the_inlet_but_not_the_outlet(rate, film):
+    """The rim is 0.2 mm from the contact; far from it the film has 467 nm."""
+    found = bs.film(press(56.0), spin=(0.0, rate, 0.0), method="reynolds")
     assert found.status is Status.OK
     assert 1e6 * found.central == pytest.approx(film, rel=0.01)
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("ball", [None, bs.STEEL], ids=["rigid", "steel"])
-def test_springs_have_the_film_of_an_axial_load_anywhere(ball):
-    """An elastic ball on springs adds its own displacements, here 0.3 % of the film."""
+def test_springs_have_the_film_of_an_axial_load_anywhere():
+    """The elastic ball adds its own displacements, here 0.3 % of the film."""
     model = bs.Sphere(surface=bs.Springs(modulus=SPRINGS.modulus))
-    contact = model.press(replace(JOINT, ball=ball), force=1500.0, tilt=0.5)
+    contact = model.press(replace(JOINT, ball=bs.STEEL), force=1500.0, tilt=0.5)
     tilted, axial = bs.film(contact, spin=(0.0, 10.0, 0.0), method="reynolds"), solved_film("springs", "reynolds")
     assert tilted.status is Status.OK
-    error = 0.002 if ball is None else 0.005
-    assert (tilted.central, tilted.minimum) == pytest.approx((axial.central, axial.minimum), rel=error)
+    assert (tilted.central, tilted.minimum) == pytest.approx((axial.central, axial.minimum), rel=0.005)
 
 
 def test_displacements_on_the_mesh_of_the_film_are_those_of_the_cup():

@@ -62,7 +62,7 @@ def with_one_error(name):
 
 def test_each_name_has_one_family_and_a_suggestion_never_names_another():
     names, suggested = sorted(presets._FAMILY), 0
-    for name in names[:: either(quick=len(names) // 2, long=16)]:  # all of them take minutes
+    for name in names[:: either(quick=len(names) // 2, long=40)]:  # all of them take minutes
         hints = [hint for hint in map(material_hint, with_one_error(name)) if "did you mean" in hint]
         assert [hint for hint in hints if repr(presets._FAMILY[name]) not in hint] == []
         suggested += len(hints)

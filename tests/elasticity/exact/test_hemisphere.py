@@ -10,7 +10,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.cli.json_answers import next_steps
-from ballsocket.contact.closed_sphere import NOTED_CHANGE
+from ballsocket.contact.closed_sphere import NOTED_CHANGE, hemisphere_indentation_change, max_hemisphere_change
 
 from ...extent import some
 from ...places import DATA
@@ -79,6 +79,19 @@ def test_the_note_has_the_changes_in_percent():
     change = {symbol: 100 * contact.hemisphere[name] for symbol, name in symbols.items()}
     assert noted == {symbol: pytest.approx(value, rel=5e-3) for symbol, value in change.items() if abs(value) > 1}
     assert {"d", "dF/dd"} <= set(noted)
+
+
+@pytest.mark.parametrize("ball", [None, bs.COCR])
+@pytest.mark.parametrize("load", [500.0, 3000.0])
+def test_the_quick_estimate_is_near_the_computed_change(ball, load):
+    joint = replace(bs.joints["hip-28"], ball=ball)
+    contact = bs.Exact().press(joint, force=load)
+    change = hemisphere_indentation_change(contact)
+    assert change == pytest.approx(contact.hemisphere["indentation"], rel=0.3, abs=1e-4)
+    largest = max(abs(value) for value in contact.hemisphere.values())
+    assert max_hemisphere_change(contact) == pytest.approx(largest, rel=0.4, abs=2e-4)
+    soft = bs.Exact().press(replace(joint, ball=material(50e3, 0.3)), force=load)
+    assert hemisphere_indentation_change(soft) > change
 
 
 def test_a_free_socket_has_the_change_of_finite_elements():

@@ -105,9 +105,9 @@ def test_every_field_has_derivatives_in_jax_and_a_traced_load_without_a_contact_
     fields = ("indentation", "max_pressure", "half_angle", "stiffness")
 
     def answer(numbers):
-        contact = bs.Tabulated().press(HIP.with_numbers(list(numbers[1:])), force=numbers[0])
+        contact = bs.Tabulated().press(HIP.with_numbers(list(numbers[1:])), force=numbers[0] * np.array([0.0, 1.0]))
         xp = jax.numpy if isinstance(numbers, jax.Array) else np
-        return xp.stack([getattr(contact, name) for name in fields])
+        return xp.stack([getattr(contact, name)[1] for name in fields])  # beside a point without load
 
     numbers = np.array([3000.0, *HIP.numbers()])
     with jax.enable_x64(True):
@@ -219,8 +219,7 @@ def test_few_steps_from_the_start_solve_loads_of_all_sizes(kind, elastic):
     np.testing.assert_allclose(found.force[reached], known.force[reached], rtol=2e-12)
 
 
-@pytest.mark.parametrize("model", [bs.Tabulated(), bs.Refined()], ids=lambda model: model.name)
-def test_blocks_inside_jit_equal_one_block(model, monkeypatch):
+def test_blocks_inside_jit_equal_one_block(monkeypatch):
     jax = pytest.importorskip("jax")
     monkeypatch.setitem(arrays._JAX_BLOCKS, "cpu", 40)
     thickness, force = np.linspace(4.0, 12.0, 100), np.linspace(0.0, 4000.0, 100)
@@ -228,7 +227,7 @@ def test_blocks_inside_jit_equal_one_block(model, monkeypatch):
 
         def press(thickness, force):
             joint = replace(RIGID, liner_thickness=thickness)
-            contact = model.press(joint, force=force)
+            contact = bs.Tabulated().press(joint, force=force)
             return [getattr(contact, name) for name in ("indentation", "half_angle", "max_pressure", "stiffness")]
 
         found = jax.jit(press)(jax.numpy.asarray(thickness), jax.numpy.asarray(force))

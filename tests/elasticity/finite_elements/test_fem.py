@@ -240,12 +240,12 @@ def test_error_bars_hold_for_both_kinds_of_elements(element):
         assert misses.max() < 4, name
 
 
-@pytest.mark.long
 def test_a_narrow_contact_in_a_massive_socket_is_hertz():
     """The patch is that of the socket's radius on both bodies, however much smaller the ball is."""
     joint = lined(thickness=np.inf, ball_radius=17.0, clearance=3.0)
     joint = replace(joint, ball=joint.liner)
-    ours, hertz = (model.press(joint, force=0.01) for model in (replace(WHOLE, gap=bs.CircularGap), bs.Hertz()))
+    meshed = replace(WHOLE, gap=bs.CircularGap, spacing=bs.Adapted(elements=24))
+    ours, hertz = (model.press(joint, force=0.01) for model in (meshed, bs.Hertz()))
     assert_close(ours, hertz, 1e-3, ("max_pressure",))
     assert_close(ours, hertz, 1e-2, ("indentation",))
 
