@@ -155,9 +155,9 @@ def render_page(template: str, title: str, sections: Sections, **context: Any) -
     return page.render(title=title, sections=parts, fingerprint=fingerprint(), **context)
 
 
-def render_part(template: str, name: str, *values: Any, **context: Any) -> str:
-    """Render a part of a page, which is a macro of a template, as HTML."""
-    return str(getattr(_environment().get_template(template).module, name)(*values, **context))
+def render_part(template: str, kind: str, *values: Any, **context: Any) -> str:
+    """Render a part of a page as HTML, by the macro of its kind in a template."""
+    return str(getattr(_environment().get_template(template).module, kind)(*values, **context))
 
 
 def trusted_html(html: str) -> str:

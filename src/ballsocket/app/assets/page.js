@@ -98,9 +98,9 @@ function sendTable() {
 }
 /**
  * Show each table that is wider than its place as blocks, in which the numbers have the headings of their columns; that
- * of the models with its main columns, unless all are asked for.
+ * of the models with its main columns, unless all are asked for. Keep the text of pictures near the size of other text.
  */
-function fitTables() {
+function fit() {
   for (const place of document.querySelectorAll(".wide")) {
     place.classList.remove("cards", "compact");
     if (place.scrollWidth <= place.clientWidth) continue;
@@ -114,19 +114,12 @@ function fitTables() {
       for (const cell of [...row.cells].slice(1)) if (cell.colSpan === 1) cell.dataset.head = heads[cell.cellIndex];
     place.classList.add("cards");
   }
-}
-/** Keep the text of pictures that are shown smaller or larger than they are drawn near the size of other text. */
-function fitText() {
   /** @type {NodeListOf<SVGSVGElement>} */
   const pictures = document.querySelectorAll(".view:not([hidden]) :is(.picture, .triad)");
   for (const { parentElement, viewBox, clientWidth } of pictures) {
     const share = clientWidth / viewBox.baseVal.width;
     parentElement.style.setProperty("--grow", String(Math.min(LARGE / share, Math.max(1, SMALL / share))));
   }
-}
-function fit() {
-  fitTables();
-  fitText();
 }
 function setTheme(name) {
   page.classList.remove("light", "dark");

@@ -163,9 +163,10 @@ def _file_rows(contact: OffAxisContact, reading: Reading) -> Iterator[list[Any]]
 
 def _numbers(contact: OffAxisContact, screen: Screen) -> Content:
     reading = screen.reading
-    margin = f"{_edge_margin_text(contact, reading)} of arc"
+    margin, error = float(contact.edge_margin), float(contact.error["edge_margin"])
+    arc = f"{reading.with_unit(CUP['inclination'], margin, error)} of arc"  # with the digits that are known
     cells = [
-        quantity_cell(DERIVED[EDGE_DISTANCE], contact.edge_distance, reading, more=margin),
+        quantity_cell(DERIVED[EDGE_DISTANCE], contact.edge_distance, reading, more=arc),
         quantity_cell(CONTACT["max_pressure"], contact.max_pressure, reading),
         quantity_cell(CUP["inclination"], contact.tilt, reading, "tilt of the load"),
         quantity_cell(CONTACT["half_angle"], contact.half_angle, reading),
@@ -179,12 +180,6 @@ def _numbers(contact: OffAxisContact, screen: Screen) -> Content:
 def _verdict(contact: OffAxisContact, reading: Reading) -> Block:
     verdict, words = rim_sentence(contact, reading.units)
     return sentence(f"{verdict.sign} {capital(words)}", f"trust {VERDICT_KINDS[verdict]}")
-
-
-def _edge_margin_text(contact: OffAxisContact, reading: Reading) -> str:
-    """Write the angle from the contact to the rim with the digits that are known."""
-    margin, error = float(contact.edge_margin), float(contact.error["edge_margin"])
-    return reading.with_unit(CUP["inclination"], margin, error)
 
 
 def _hint(contact: OffAxisContact) -> str:

@@ -66,8 +66,4 @@ def content_html(content: Content) -> str:
     """Render sentences, lists, checks and tables as HTML for a report."""
     if isinstance(content, str):
         return content
-    return "".join(part if isinstance(part, str) else _rendered(**part) for part in content)
-
-
-def _rendered(kind: str, **arguments: Any) -> str:
-    return render_part("parts.html", kind, **arguments)
+    return "".join(part if isinstance(part, str) else render_part("parts.html", **part) for part in content)
