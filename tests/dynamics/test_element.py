@@ -269,7 +269,7 @@ def test_jax_derivatives_of_the_energy_equal_force_and_tangent():
     jax = pytest.importorskip("jax")
     element = bs.ForceElement(bs.Tabulated(), HIP, cup=CUPS["leaning cup"], smoothing=0.02)
     with jax.enable_x64(True):
-        slope, bend = (derive(lambda r: element(r).energy) for derive in (jax.grad, jax.hessian))
+        slope, bend = (jax.jit(derive(lambda r: element(r).energy)) for derive in (jax.grad, jax.hessian))
         push = jax.jit(lambda r: element(r, 10.0 * r, r).force)
         for centre in ([0.01, 0.02, C], [0.0, 0.0, 0.0], [0.0, 0.0, C + 0.05], [C + 0.04, 0.0, 0.02]):
             position = jax.numpy.asarray(centre)
