@@ -101,6 +101,24 @@ def test_work_of_a_full_contact_is_the_strain_energy(pair):
     assert load_search._partial_work(narrow) == pytest.approx(narrow.strain_energy, rel=2e-3)
 
 
+def test_a_bracket_finds_the_contacts_between_its_ends(pair):
+    bracket = ContactBracket(pair=pair, gap=GAP, low=0.3, high=1.0)
+    low, high = partial_contact(pair, GAP, 0.3), partial_contact(pair, GAP, 1.0)
+    for kind in ("force", "indentation"):
+        first, last = getattr(low, kind), getattr(high, kind)
+        for outside in (0.99 * first, 1.01 * last):
+            assert bracket.solve(kind, outside) is bracket.estimate_angle(kind, outside) is None
+        assert bracket.lies_below(kind, 1.01 * last)
+        assert not bracket.lies_below(kind, 0.99 * last)
+        for fraction in (0.0, 0.3, 0.9, 1.0):
+            load = np.clip(first ** (1 - fraction) * last**fraction, first * (1 + 1e-12), last * (1 - 1e-12))
+            contact = bracket.solve(kind, load)
+            assert getattr(contact, kind) == pytest.approx(load, rel=1e-9)
+            assert bracket.estimate_angle(kind, load) == pytest.approx(contact.half_angle, rel=0.02)
+            bisected = bracket._solve_by_brent(kind, load, 0.29, 1.0)
+            assert bisected.half_angle == pytest.approx(contact.half_angle, rel=1e-8)
+
+
 @pytest.mark.parametrize("elements", [5.5, 6.5])
 def test_a_contact_of_few_elements_has_a_pole_pressure(pair, elements):
     half_angle = elements * pair.resolution.size
