@@ -138,7 +138,6 @@ test_arguments_that_are_not_allowed_are_refused = refused_calls(
         (lambda wrong=wrong: PRESSED.friction_torque(wrong), "a coefficient of friction is 0 or more and finite")
         for wrong in (-0.1, np.inf, np.nan)
     ),
-    (lambda: PRESSED.pressure(45.0), "angle = 45 is not allowed: .* 45 degrees are 0.7854 radians"),
     (lambda: PRESSED.pressure_at([0.0, 0.0, 1.001]), "a direction is a unit vector"),
     (lambda: PRESSED.pressure_at([0.0, 0.0, 0.999]), "a direction is a unit vector"),
     (lambda: bs.HessForsbach().press(TWO_JOINTS, force=[1.0, 2.0, 3.0]), APART),

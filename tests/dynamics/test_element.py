@@ -74,7 +74,7 @@ def test_force_and_tangent_are_derivatives_of_the_energy(model, cup, smoothing):
     np.testing.assert_array_equal(load.tangent, np.swapaxes(load.tangent, -1, -2))
 
 
-def check_damping_matrix(element, position, velocity, spin, error=None):
+def check_damping_matrix(element, position, velocity, spin):
     """The damping matrix is symmetric and the derivative of the loads over the rates."""
     matrix, step = element(position, velocity, spin).damping_matrix, 1e-4
     differences, rates = np.zeros_like(matrix), np.concatenate([velocity, spin], axis=1)
@@ -82,7 +82,7 @@ def check_damping_matrix(element, position, velocity, spin, error=None):
         ends = [element(position, *np.hsplit(rates + sign * step * np.eye(6)[axis], 2)) for sign in (1, -1)]
         loads = [np.concatenate([end.force, end.moment], axis=1) for end in ends]
         differences[:, :, axis] = (loads[1] - loads[0]) / (2 * step)
-    np.testing.assert_allclose(matrix, differences, atol=error or 1e-6 * np.abs(matrix).max())
+    np.testing.assert_allclose(matrix, differences, atol=1e-6 * np.abs(matrix).max())
     np.testing.assert_allclose(matrix, np.swapaxes(matrix, -1, -2), atol=1e-12 * np.abs(matrix).max())
 
 
@@ -92,13 +92,6 @@ def test_damping_matrix_is_symmetric_and_the_derivative_over_the_speeds(cup):
         check_damping_matrix(bs.ForceElement(bs.HessForsbach(), HIP, cup=cup, **{name: LOSSY[name]}), *states(30))
     viscous = Friction(coefficient=0.0, viscous=1e-4)
     check_damping_matrix(bs.ForceElement(bs.HessForsbach(), HIP, friction=viscous), *states(30))
-
-
-def test_smoothed_damping_matrix_is_the_derivative_over_the_speeds_where_the_ball_sticks_or_leaves():
-    element = bs.ForceElement(bs.HessForsbach(), HIP, damping=Damping(hysteresis=0.01, time=2e-4), smoothing=0.02)
-    for speed in (-200.0, -95.0, -82.0, -70.0, 0.0, 50.0):
-        position, velocity = np.array([[0.0, 0.0, C + 0.05]]), np.array([[3.0, 0.0, speed]])
-        check_damping_matrix(element, position, velocity, np.zeros((1, 3)), 2e-5)
 
 
 @EVERY_CUP
@@ -228,25 +221,6 @@ def test_each_element_warns_once_that_its_model_is_not_valid(caplog):
     assert first.startswith("hertz at an indentation of 0.05 mm: outside ε")
 
 
-def test_half_angle_of_springs_has_its_cosine_down_to_a_millionth_of_the_clearance():
-    element = bs.ForceElement(bs.HessForsbach(), HIP)
-    for depth in (1e-7, 1e-6, 1e-3, 0.05, 1.0):
-        versine = depth / (C + depth)
-        assert 2 * np.sin(element.half_angle(depth) / 2) ** 2 == pytest.approx(versine, rel=1e-8)
-        assert element.max_pressure(depth) == pytest.approx(bs.hess_forsbach(HIP) * depth, rel=1e-8)
-    assert element.half_angle(0.0) == element.max_pressure(-1.0) == 0.0
-    assert element.half_angle(np.array([-1.0, 0.0, 0.05])).tolist()[:2] == [0.0, 0.0]
-
-
-def test_wall_is_the_liner_thickness_or_the_range_of_the_model():
-    assert bs.ForceElement(bs.HessForsbach(), HIP).wall == HIP.liner_thickness
-    thick = replace(HIP, liner_thickness=100.0)
-    assert bs.ForceElement(bs.HessForsbach(), thick).wall == HIP.socket_radius
-    tabulated = bs.ForceElement(bs.Tabulated(), HIP)
-    assert tabulated.wall == min(HIP.liner_thickness, tabulated.potential.deepest)
-    assert tabulated((0.0, 0.0, C + 0.99 * tabulated.wall)).status is ContactState.CONTACT
-
-
 def test_normal_force_of_a_leaving_ball_is_zero_and_never_tensile():
     element = bs.ForceElement(bs.HessForsbach(), HIP, damping=Damping(hysteresis=0.01))
     still = element((0.0, 0.0, C + 0.05)).force[2]
@@ -269,7 +243,7 @@ def test_jax_derivatives_of_the_energy_equal_force_and_tangent():
     jax = pytest.importorskip("jax")
     element = bs.ForceElement(bs.Tabulated(), HIP, cup=CUPS["leaning cup"], smoothing=0.02)
     with jax.enable_x64(True):
-        slope, bend = (derive(lambda r: element(r).energy) for derive in (jax.grad, jax.hessian))
+        slope, bend = (jax.jit(derive(lambda r: element(r).energy)) for derive in (jax.grad, jax.hessian))
         push = jax.jit(lambda r: element(r, 10.0 * r, r).force)
         for centre in ([0.01, 0.02, C], [0.0, 0.0, 0.0], [0.0, 0.0, C + 0.05], [C + 0.04, 0.0, 0.02]):
             position = jax.numpy.asarray(centre)

@@ -1,5 +1,7 @@
 """Measurements from files: heads with units, uncertainties and gaps."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -8,6 +10,8 @@ from ballsocket.identification import HeavyTailed, Machine, NormalScatter
 from ballsocket.identification.columns import Gaps, read_measured
 from ballsocket.identification.file import read_identify
 from ballsocket.studies import Normal
+
+from ..refusals import text_tables, unescaped
 
 HIP = bs.joints["hess-forsbach"]
 FORCE = np.array([250.0, 500.0, 1000.0, 2000.0, 3000.0])
@@ -83,20 +87,15 @@ def test_angles_belong_to_pressures_a_machine_to_indentations_and_a_saturation_t
     assert film.saturated.tolist() == [False, True]
 
 
+EDITS, COLUMNS = text_tables(Path(__file__).with_name("refused.txt"))
+
+
 @pytest.mark.parametrize(
     ("text", "settings", "message"),
     [
-        ("force,indentation_um\n1,2\n", {}, "column 'force' has no unit: use force_N, or another unit"),
-        ("force_N,indentation_N\n1,2\n", {}, "the unit of indentation_N = '1 N' is not a length"),
-        ("force_N,depth_mm\n1,2\n", {}, "column 'depth_mm' is not known"),
-        ("force_N,force_kN\n1,2\n", {}, "press.csv: the column force appears twice"),
-        ("force_N\n1\n", {}, "press.csv has no column of a measured quantity besides force"),
-        (HEADS + "100,2\n200,\nx,4\n", {}, "no number for force, indentation in line 3, 4; add it, or omit such"),
+        *((unescaped(text), {}, message) for text, message in COLUMNS),
         (HEADS + "100,\n" * 9, {}, r"in line 2, 3, 4, 5, 6, 7, 8, 9 \.\.\.; add it"),
         (HEADS + "100,\n" * 8 + "100,20\n", {}, "in line 2, 3, 4, 5, 6, 7, 8, 9; add it"),
-        ("force_N,liner_poisson_mm\n1,2\n", {}, "liner_poisson"),
-        (HEADS, {}, "press.csv has no row"),
-        (HEADS + "0,2\n9,3\n", {}, r"force\[0\] = 0 is not allowed: at first touch the indentation is 0"),
         (HEADS + "1,2\n", {"quantities": ["area"]}, "has no column of area; its columns are force, indentation"),
         (HEADS + "1,2\n", {"load": "half_angle"}, "has no load 'half_angle': it needs a column of force, indentation"),
         (HEADS + "1,2\n", {"load": "indentation", "quantities": ["indentation"]}, "both the measured quantity and the"),
@@ -199,29 +198,10 @@ def test_a_file_chooses_columns_load_and_gaps(question, tmp_path):
     assert data.order.tolist() == [0.0, 2.0]
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "message"),
-    [
-        ("clearance =", "clearence =", "data.toml: 'clearence' in [free] is not known; did you mean 'clearance'?"),
-        ('"0.02..0.3 mm"', '"0.02 mm"', "clearance = '0.02 mm' is not a range"),
-        (FRAME, 'machine = "fram"', "data.toml: machine 'fram' is not known; did you mean 'frame'?"),
-        (FRAME, "values = 3", "[[data]] needs either a file, or a quantity with its values"),
-        (FRAME, 'force = "3 kN"', "'force' in [[data]] with a file is not known"),
-        (PERCENT, 'uncertainty = "-1 %"', "data.toml: area_uncertainty = "),
-        (PERCENT, PERCENT + '\nmass = "2 kg"', "mass belongs to [[data]] of a frequency, not of area"),
-        (AREA, "", "data.toml: [[data]] with values needs its quantity"),
-        (AREA, AREA + '\ngaps = "refuse"', "'gaps' in [[data]] with values is not known"),
-        ('model = "tabulated"', 'scatter = "cauchy"', "scatter = 'cauchy' is not known; known: normal, heavy-tailed"),
-        ('"0..20 um/kN"', '"1 um"', "data.toml: machine.frame.compliance = '1 um' is not a compliance"),
-        ("[free]", "[fre]", "'fre' at the top is not known; did you mean 'free'?"),
-        ("[machine.frame]", "[machine]\nframe2 = 3\n[machine.frame]", "machine.frame2 = 3 must be a table"),
-        ("compliance =", "complianc =", "'complianc' in [machine.frame] is not known; did you mean 'compliance'?"),
-        ('"0.1 um"', '"0.1 um"\ngaps = "skip"', "gaps = 'skip' is not known; known: refuse, leave-out"),
-    ],
-)
+@pytest.mark.parametrize(("old", "new", "message"), EDITS)
 def test_wrong_keys_and_units_of_a_file_are_refused(question, old, new, message):
     with pytest.raises(ValueError) as refused:  # noqa: PT011
-        question((old, new))
+        question((unescaped(old), unescaped(new)))
     assert message in str(refused.value)
 
 

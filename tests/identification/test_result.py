@@ -123,22 +123,6 @@ def test_a_search_without_convergence_is_noted_with_the_notes_of_the_model():
     assert (result.summary()["valid"], stopped.summary()["valid"]) == (True, False)
 
 
-def test_the_shift_ratio_is_the_shift_over_half_the_band():
-    result = identified(measured())
-    estimate = result["clearance"]
-    for error in result.sensitivity:
-        ratio = 2 * abs(error.shifts["clearance"]) / (estimate.high - estimate.low)
-        assert result.shift_ratio(error, "clearance") == pytest.approx(ratio)
-    assert [error.size for error in result.sensitivity] == [1e-3, 1e-6, 1e-4]
-    pair = {"clearance": (0.05, 0.2), "liner.young": (500.0, 2000.0)}
-    result = identified(measured("area", uncertainty=4.0), measured(uncertainty=0.1), free=pair)
-    assert np.isnan(result.sensitivity[0].shifts["clearance"])  # the clearance is not identifiable
-    assert result.shift_ratio(result.sensitivity[0], "clearance") == 0.0
-    both = measured(machine=Machine(name="a")), measured(machine=Machine(name="b", offset=(-0.01, 0.01)))
-    cases = [(error.machine, error.part) for error in identified(*both, measured("area")).sensitivity]
-    assert cases == [("a", "offset"), ("a", "compliance"), ("a", "drift"), ("b", "compliance"), ("b", "drift")]
-
-
 def candidates_of(quantity, result):
     return [candidate for candidate in standard_candidates(result) if candidate.quantity == quantity]
 

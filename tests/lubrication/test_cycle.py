@@ -219,18 +219,6 @@ def test_steps_are_resolved_if_the_edge_moves_less_than_an_inlet_length():
 
 
 @pytest.mark.long
-def test_an_elastic_start_up_ends_at_the_steady_film():
-    """An axial load in a real cup, whose motion begins at once."""
-    model, oil = bs.Sphere(), bs.Lubricant(viscosity=1e-2)
-    steady = bs.film(model.press(JOINT, force=1500.0), spin=(5.0, 0, 0), lubricant=oil, method="reynolds")
-    steps = {"forces": np.full(8, 1500.0), "spins": np.full((8, 3), (5.0, 0, 0)), "durations": 0.12}
-    film = film_over_steps(model, JOINT, **steps, lubricant=oil)
-    assert film.film.converged
-    assert film.central[-1] == pytest.approx(steady.central, rel=0.01)
-    assert film.minimum[-1] == pytest.approx(steady.minimum, rel=0.04)  # of first order in the cells at the edge
-
-
-@pytest.mark.long
 def test_start_up_ends_at_the_steady_film_and_rest_squeezes_it_out():
     problem, start = springs_problem(0.5, 2.5, 16)
     moving = load_steps(np.full(20, 1500.0), np.full(20, 10.0), 0.045)

@@ -85,14 +85,11 @@ def test_the_wave_keeps_its_stated_error(case):
 
 
 def test_films_of_shared_cases_have_the_values_of_other_meshes():
-    """Elastic bodies: central 468 nm, and 467 nm with 48 meridians in place of 40. Springs: as above."""
+    """Elastic bodies: central 468 nm, and 467 nm with 48 meridians in place of 40."""
     assert 1e6 * solved_film("elastic", "reynolds").central == pytest.approx(467.5, rel=0.01)
     if extent.whole:
-        springs = solved_film("springs", "reynolds")
-        assert springs.valid
         slow = solved_film("slow", "reynolds")
         assert slow.pressure.max() == pytest.approx(CONTACT.max_pressure, rel=0.005)  # tends to the dry one
-        assert 1e6 * np.array([springs.central, springs.minimum]) == pytest.approx([515.2, 433.0], rel=0.003)
 
 
 def test_wave_films_on_springs_scale_with_the_root_of_viscosity_and_speed():

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.core.executors.dask import Distributed
 from ballsocket.studies.derivatives import finite_differences, off_axis_uncertainty
 from ballsocket.studies.design import Method, Span, sample, table
 from ballsocket.studies.distributions import Normal, Rectangular, copula_matrix, tolerance
@@ -94,10 +93,8 @@ def off_axis(force=2000.0, /, **spread):
         # calibrations
         *((lambda f=f: bs.calibrate(HIP, force=f), "loads .N. above 0") for f in ([0.0, 1000.0], np.nan, [])),
         (lambda: bs.calibrate(HIP, force=1e9), "exact has no result for some joints or loads: .* not reach this load"),
-        (lambda: bs.corrected_vessel(1.0, -3.0, 0.0), "the factor on K_B must be above 0"),
         (lambda: bs.calibrate(TWO, form=bs.as_polynomial), "has 2 different values, but Eq. .18. has three constants"),
-        # engines and other kinds
-        (lambda: Distributed(address="tcp://127.0.0.1:1", workers=2), "give an address or a number of workers"),
+        # other kinds
         (lambda: press(joint="hip-28", force=1.0), "joint must be a Joint, got 'hip-28'"),
         (lambda: press(design=3000.0), r"design must be a Design, .* got 3000\.0; loads have names"),
     ],

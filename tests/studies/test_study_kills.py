@@ -109,17 +109,6 @@ def test_a_study_stopped_at_random_changes_of_its_store_is_that_of_an_undisturbe
     assert equal_to_undisturbed(store)
 
 
-def test_a_study_that_is_killed_with_its_processes_resumes(tmp_path, start):
-    store, process = tmp_path / "s.zarr", start(engine="processes")
-    wait_until(lambda: stored_blocks(store) or process.poll() is not None)
-    os.killpg(process.pid, signal.SIGKILL)
-    process.wait()
-    assert (before := stored_blocks(store))
-    assert start(engine="processes").wait(PATIENCE) == 0
-    assert stored_blocks(store) >= before
-    assert equal_to_undisturbed(store)
-
-
 def test_killed_workers_of_dask_cost_retries(tmp_path, start):
     process, moments, killed = start(engine="dask"), random.Random("dask"), []
     while len(killed) < 2 and process.poll() is None:

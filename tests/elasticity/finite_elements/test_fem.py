@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.core.arrays import gauss_legendre
 from ballsocket.core.validity import Status
 from ballsocket.elasticity.finite_elements.progress import progress_to
 from ballsocket.elasticity.finite_elements.section import write_vtk
 from ballsocket.reports.section_plots import section_figure
 
+from ...catalogue.test_contract import check_pressure_integrals, check_scaling
 from ...extent import either, some
 from ...joints import HIP, lined
 from ...places import DATA
@@ -277,26 +277,9 @@ def test_force_is_the_slope_of_the_energy_and_stiffness_that_of_the_force(gap):
     np.testing.assert_allclose((above.force - below.force) / (0.04 * d), here.stiffness, rtol=2e-3)
 
 
-def test_vertical_pressure_integrates_to_the_force():
-    contact = ONE_MESH.press(HIP, force=np.array([300.0, 3000.0]))
-    nodes, weights = (np.array(part)[:, None] for part in gauss_legendre(200))
-    angle = contact.half_angle * np.sin(np.pi / 2 * nodes)
-    width = weights * contact.half_angle * np.pi / 2 * np.cos(np.pi / 2 * nodes)
-    total = np.sum(contact.pressure(angle) * np.sin(angle) * np.cos(angle) * width, axis=0)
-    np.testing.assert_allclose(2 * np.pi * HIP.socket_radius**2 * total, contact.force, rtol=1e-4)
-    assert contact.pressure(np.zeros(2)) == pytest.approx(contact.max_pressure, rel=1e-12)
-    assert np.all(contact.pressure(contact.half_angle * 1.000001) == 0)
-
-
-def test_results_scale_with_lengths_and_moduli():
-    a, b = 3.0, 0.2
-    lengths = {name: a * getattr(HIP, name) for name in ("ball_radius", "clearance", "liner_thickness")}
-    liner, ball = (bs.Material(young=b * part.young, poisson=part.poisson) for part in (HIP.liner, HIP.ball))
-    one = ONE_MESH.press(HIP, force=3000.0)
-    other = ONE_MESH.press(bs.Joint(**lengths, liner=liner, ball=ball), force=3000.0 * a * a * b)
-    for name, scale in {"indentation": a, "half_angle": 1.0, "max_pressure": b}.items():
-        assert getattr(other, name) == pytest.approx(scale * getattr(one, name), rel=1e-9)
-    assert other.stiffness == pytest.approx(a * b * one.stiffness, rel=1e-6)
+def test_finite_elements_obey_laws_of_the_catalogue():
+    check_pressure_integrals(ONE_MESH, 1e-4)
+    check_scaling(ONE_MESH, 1e-6)
 
 
 @pytest.mark.long

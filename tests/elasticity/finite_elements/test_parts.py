@@ -133,19 +133,6 @@ def test_the_stress_near_a_rim_is_solved_for():
     assert cut.quick_von_mises.value == cut.von_mises
 
 
-def test_small_elements_end_at_the_reach_and_never_leave_a_sliver():
-    resolution = Resolution(size=0.1, reach=0.6, growth=1.3, widest=0.3, deepest=0.5, order=1)
-    for end in (0.5, 0.6, 0.64):
-        assert resolution.angles(end) == pytest.approx(np.linspace(0.0, end, round(min(end, 0.6) / 0.1) + 1))
-    for end in (0.66, 0.75, 1.5):
-        angles = resolution.angles(end)
-        assert angles[:7] == pytest.approx(np.arange(7) * 0.1)
-        assert angles[-1] == end
-        assert np.diff(angles).max() <= 0.3 + 1e-12
-    wide = Resolution(size=0.1, reach=inf, growth=1.3, widest=0.1, deepest=0.5, order=1)
-    assert wide.angles(0.02).tolist() == [0.0, 0.02]
-
-
 def test_halvings_divide_every_element_in_four():
     once = Resolution(size=0.2, reach=0.8, growth=1.3, widest=0.3, deepest=0.5, order=2)
     shape = socket_shape(HIP, bs.Cup())

@@ -38,7 +38,6 @@ TABLE = partial(bs.DepthTable, polar=[0.0, 0.7, 1.5], azimuth=[0.0, 1.5, 3.0, 4.
 ORIENT = partial(bs.orient, joint=RIGID, model=COARSE, force=100.0, inclination=[0.5], anteversion=[0.1])
 PRELOAD = partial(bs.Preload, model=WRAPPED, joint=TIGHT)
 PULL = partial(bs.pull_out, model=replace(WRAPPED, cup=bs.Cup(arc_of_cover=radians(200.0))), joint=TIGHT)
-FIT = partial(bs.Joint, ball_radius=13.5, interference=0.05, liner_thickness=2.5, liner=bs.POM)
 STUDY = partial(bs.study, COARSE, RIGID, force=2000.0)
 DECK = partial(TiltedDeck, joint=lined(), cup=bs.Cup(), indentation=0.04, tilt=0.5)
 SCAN = partial(scan_from_points, points=scanned_points())
@@ -100,8 +99,6 @@ VALUE_ERRORS = [
     (lambda: PRELOAD().separation_displacement(np.eye(3)), {}, "give one direction"),
     (PULL, {"model": replace(WRAPPED, cup=bs.Cup())}, "a socket of 180 deg does not hold its ball"),
     (PULL, {"friction": -0.1}, "friction = -0.1 is not allowed"),
-    (FIT, {"clearance": 0.1}, "one too many"),
-    (FIT, {"interference": 5.0}, "a tenth of the ball"),
     (DECK, {"joint": lined(ball=bs.STEEL)}, "rigid ball"),
     (DECK, {"cup": bs.Cup(interface=bs.Interface.SLIDING)}, "bonded liner"),
     (DECK, {"indentation": 0.0}, "indentation"),
