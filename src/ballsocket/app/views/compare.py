@@ -41,7 +41,7 @@ class Compare(View):
     name, title = "compare", "Compare"
     body = """
 <div class="inputs-row" id="compare-inputs"></div>
-<p><button type="button" class="plain" data-tell="compare.keep">Add this design to the comparison</button></p>
+<p><button type="button" data-tell="compare.keep">Add this design to the comparison</button></p>
 <div id="compare-trouble" role="alert"></div><div id="compare-note"></div>
 <div id="compare-table"></div>
 <div id="compare-charts"></div>
@@ -154,7 +154,7 @@ def _pressed(files: Mapping[str, JointFile], screen: Screen) -> Designs:
         headings[name] = f"<small>head ⌀ {head}, liner {liner}</small>"
         if name != _PRESENT and screen.beside:
             attributes = f"data-tell='compare.remove' data-value='{escape(name)}' aria-label='Remove {escape(name)}'"
-            headings[name] += f"<button type='button' class='plain' {attributes}>Remove</button>"
+            headings[name] += f"<button type='button' {attributes}>Remove</button>"
     return press_designs(files, screen.answered_by, headings)
 
 
