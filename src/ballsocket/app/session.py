@@ -6,7 +6,6 @@ import logging
 from asyncio import TimerHandle
 from base64 import b64encode
 from collections.abc import Callable, Mapping
-from concurrent.futures import Future
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -14,7 +13,7 @@ from typing import Any
 from ..core.checks import check_names, shown
 from ..core.unit_systems import Units
 from .channel import Channel
-from .jobs import Job, call_later, run_in_thread
+from .jobs import Job, Outcome, call_later, run_in_thread
 from .running import RunFinished, RunRefused
 from .solving import SlowPresses
 from .state.designs import read_upload, session_text
@@ -168,7 +167,7 @@ class Page:
         check_names([name], readers, "among the inputs")
         return readers[name]
 
-    def _saved(self, outcome: Future[tuple[str, bytes]]) -> None:
+    def _saved(self, outcome: Outcome) -> None:
         try:
             name, content = outcome.result()
         except ValueError as error:

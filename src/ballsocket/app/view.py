@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from concurrent.futures import Future
 from dataclasses import dataclass
 from functools import partial
 from html import escape
@@ -20,7 +19,7 @@ from ..files.joint_file import JointFile
 from ..files.joint_toml import toml_of
 from ..reports.pages import pdf_of, picture
 from ..reports.press_report import joint_report
-from .jobs import run_in_thread
+from .jobs import Outcome, run_in_thread
 from .running import Report
 from .state.designs import file_stem
 from .state.screen import Screen
@@ -109,13 +108,13 @@ class View(ABC):
         """Run some work in a thread and show its result, unless the screen has changed."""
         screen = self.page.screen
 
-        def finish(outcome: Future[Any]) -> None:
+        def finish(outcome: Outcome) -> None:
             if screen is self.page.screen:
                 self.page.attempt(partial(self._show_outcome, outcome, show))
 
         run_in_thread(lambda: work() if screen is self.page.screen else None, finish)
 
-    def _show_outcome(self, outcome: Future[Any], show: Callable[[T], None]) -> None:
+    def _show_outcome(self, outcome: Outcome, show: Callable[[T], None]) -> None:
         try:
             result = outcome.result()
         except (ValueError, OutsideDomainError) as error:
