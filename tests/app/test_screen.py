@@ -493,4 +493,4 @@ def test_a_new_quantity_of_a_contact_is_in_the_numbers_the_file_and_the_table_of
     assert row[heads.index(f"{new.name}_{unit.text}")] == pytest.approx(half)
     designs = {"design": design_table.ComparedDesign(file=screen.file, contact=contact)}
     rows = dict(design_table.design_rows(designs, "design", screen, [new.name]))
-    assert rows[f"half of the force [{unit.text}]"][0].text == text
+    assert rows[f"half of the force [{unit.text}]"][0] == [text]

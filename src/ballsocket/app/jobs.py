@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-from collections import deque
 from collections.abc import Callable, Hashable
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 from contextvars import Context, ContextVar, copy_context
@@ -90,6 +89,9 @@ _DRAWING_THREAD = ThreadPoolExecutor(max_workers=1, thread_name_prefix="drawing"
 """One at a time: they share what a figure is drawn with, and leave the other core to the pages."""
 
 
+Outcome = Future[Any] | asyncio.Future[Any]  # of a function that has run: its result, or what it raised
+
+
 class PageThread:
     """Drawings and files of one page, of which at most one waits for the shared thread: pages take turns."""
 
@@ -97,42 +99,30 @@ class PageThread:
     """Thread of the page whose request is handled; None without a browser."""
 
     def __init__(self) -> None:
-        self._waiting: deque[tuple[Callable[[], Any], Callable[[Future[Any]], None]]] = deque()
-        self._works = self._closed = False
+        self._turn = asyncio.Lock()
+        self._tasks: set[asyncio.Task[None]] = set()
 
-    def add(self, work: Callable[[], Any], on_done: Callable[[Future[Any]], None]) -> None:
+    def add(self, work: Callable[[], Any], on_done: Callable[[Outcome], None]) -> None:
         """Run a function after those that wait, and pass its outcome to the page unless it is closed."""
-        if len(self._waiting) >= _MAX_WAITING:
+        if len(self._tasks) > _MAX_WAITING:
             raise ValueError(f"{_MAX_WAITING} drawings of this page wait already: try again in a moment")
-        self._waiting.append((work, on_done))
-        if not self._works:
-            self._start_next()
+        task = asyncio.create_task(self._run(work, on_done))
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
 
-    def _start_next(self) -> None:
-        self._works = bool(self._waiting)
-        if not self._works:
-            return
-        work, on_done = self._waiting.popleft()
-        loop, context = asyncio.get_running_loop(), copy_context()
-
-        def report(future: Future[Any]) -> None:
-            if not self._closed:
-                self._start_next()
-                on_done(future)
-
-        def hand_over(future: Future[Any]) -> None:
-            if not self._closed:
-                loop.call_soon_threadsafe(report, future, context=context)
-
-        _DRAWING_THREAD.submit(work).add_done_callback(hand_over)
+    async def _run(self, work: Callable[[], Any], on_done: Callable[[Outcome], None]) -> None:
+        async with self._turn:
+            outcome = asyncio.get_running_loop().run_in_executor(_DRAWING_THREAD, work)
+            await asyncio.wait([outcome])
+        on_done(outcome)
 
     def close(self) -> None:
         """Forget all that waits."""
-        self._closed = True
-        self._waiting.clear()
+        for task in self._tasks:
+            task.cancel()
 
 
-def run_in_thread(work: Callable[[], Any], on_done: Callable[[Future[Any]], None]) -> None:
+def run_in_thread(work: Callable[[], Any], on_done: Callable[[Outcome], None]) -> None:
     """Run a function in a thread and pass its outcome to an open page; wait for it without a browser."""
     thread = PageThread.current.get()
     if thread is None:

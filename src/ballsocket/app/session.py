@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import logging
-from asyncio import TimerHandle
 from base64 import b64encode
 from collections.abc import Callable, Mapping
-from concurrent.futures import Future
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -14,7 +12,7 @@ from typing import Any
 from ..core.checks import check_names, shown
 from ..core.unit_systems import Units
 from .channel import Channel
-from .jobs import Job, call_later, run_in_thread
+from .jobs import Job, Outcome, run_in_thread
 from .running import RunFinished, RunRefused
 from .solving import SlowPresses
 from .state.designs import read_upload, session_text
@@ -54,7 +52,6 @@ class Page:
             "designs.save": lambda links: self.send_file("designs.toml", session_text(_links(links)).encode("utf-8")),
             "designs.compare": self._compare_designs,
         }
-        self._timers: set[TimerHandle] = set()
         self._slow_presses = SlowPresses(self._refresh)
         self._printing = Job(self._printed)
         self.channel.once("fresh", True)
@@ -99,25 +96,6 @@ class Page:
         self.refuse("")
         self.channel.accept_fields()
         self._change(self._read(str(words.get("query"))))
-
-    def later(self, seconds: float, function: Callable[[], None]) -> Callable[[], None]:
-        """Call a function later unless the page is closed, or at once without a browser; return what cancels it."""
-
-        def due() -> None:
-            cancel()
-            self.attempt(function)
-
-        def cancel() -> None:
-            if timer is not None:
-                self._timers.discard(timer)
-                timer.cancel()
-
-        timer = call_later(seconds, due)
-        if timer is None:
-            self.attempt(function)
-        else:
-            self._timers.add(timer)
-        return cancel
 
     def _handle_request(self, event: str, words: Mapping[str, Any]) -> None:
         """Handle a request of the browser; show why it failed, beside its input if it has one."""
@@ -168,7 +146,7 @@ class Page:
         check_names([name], readers, "among the inputs")
         return readers[name]
 
-    def _saved(self, outcome: Future[tuple[str, bytes]]) -> None:
+    def _saved(self, outcome: Outcome) -> None:
         try:
             name, content = outcome.result()
         except ValueError as error:
@@ -263,8 +241,6 @@ class Page:
     def leave(self) -> None:
         self._slow_presses.leave()
         self._printing.stop()
-        for timer in self._timers:
-            timer.cancel()
         for view in self._views.values():
             view.leave()
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import csv
 from abc import ABC, abstractmethod
+from asyncio import TimerHandle
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from concurrent.futures import Future
 from dataclasses import dataclass
 from functools import partial
 from html import escape
@@ -20,7 +20,7 @@ from ..files.joint_file import JointFile
 from ..files.joint_toml import toml_of
 from ..reports.pages import pdf_of, picture
 from ..reports.press_report import joint_report
-from .jobs import run_in_thread
+from .jobs import Outcome, call_later, run_in_thread
 from .running import Report
 from .state.designs import file_stem
 from .state.screen import Screen
@@ -66,7 +66,7 @@ class View(ABC):
         self.page, self.channel = page, page.channel
         self.actions: dict[str, Reader] = {}
         self.works: list[LongWork] = []
-        self._cancel: Callable[[], None] = lambda: None
+        self._timer: TimerHandle | None = None
         self.begin()
 
     def begin(self) -> None:  # noqa: B027  some views have nothing more
@@ -101,21 +101,27 @@ class View(ABC):
         self.channel.expect(f"#{self.name}-{element}" for element in elements)
 
     def later(self, seconds: float, function: Callable[[], None]) -> None:
-        """Call a function later, in place of the last one that still waits."""
-        self._cancel()
-        self._cancel = self.page.later(seconds, function)
+        """Call a function later, in place of the last one that still waits; at once without a browser."""
+        self._stop_timer()
+        self._timer = call_later(seconds, partial(self.page.attempt, function))
+        if self._timer is None:
+            self.page.attempt(function)
+
+    def _stop_timer(self) -> None:
+        if self._timer is not None:
+            self._timer.cancel()
 
     def compute(self, work: Callable[[], T], show: Callable[[T], None]) -> None:
         """Run some work in a thread and show its result, unless the screen has changed."""
         screen = self.page.screen
 
-        def finish(outcome: Future[Any]) -> None:
+        def finish(outcome: Outcome) -> None:
             if screen is self.page.screen:
                 self.page.attempt(partial(self._show_outcome, outcome, show))
 
         run_in_thread(lambda: work() if screen is self.page.screen else None, finish)
 
-    def _show_outcome(self, outcome: Future[Any], show: Callable[[T], None]) -> None:
+    def _show_outcome(self, outcome: Outcome, show: Callable[[T], None]) -> None:
         try:
             result = outcome.result()
         except (ValueError, OutsideDomainError) as error:
@@ -154,6 +160,7 @@ class View(ABC):
 
     def leave(self) -> None:
         """Stop all work of a closed page."""
+        self._stop_timer()
         for work in self.works:
             work.leave()
 

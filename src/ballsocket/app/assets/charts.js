@@ -118,7 +118,7 @@ function figure(chart) {
   if (!chart.curves.length) return element("figure", { class: "quiet" }, caption, draw(chart));
   if (red) caption.append(element("b", { class: "no" }, red));
   const node = element("figure", { class: "chart" }, ...(words || red ? [caption] : []), draw(chart));
-  const button = (text, label) => element("button", { type: "button", class: "plain", "aria-label": label }, text);
+  const button = (text, label) => element("button", { type: "button", "aria-label": label }, text);
   const zoom = button("Zoom", `Zoom into ${chart.y}`), all = button("All", `Show all of ${chart.y}`);
   const copy = button("CSV", `Copy ${chart.y} as CSV`);
   /** @param {number[] | null} ends */

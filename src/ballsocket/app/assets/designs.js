@@ -104,13 +104,13 @@ function render() {
     tick.checked = chosen.has(design.id);
     tick.disabled = design.id === current;
     tick.addEventListener("change", () => (tick.checked ? chosen.add(design.id) : chosen.delete(design.id)));
-    const button = element("button", { type: "button", class: "plain" }, design.name);
+    const button = element("button", { type: "button" }, design.name);
     if (design.id === current) button.setAttribute("aria-current", "true");
     button.addEventListener("click", () => open(design));
     return element("li", {}, tick, button);
   }));
   if (removed) at("design-list").append(element("li", {},
-    element("button", { type: "button", class: "plain", "data-design": "restore" }, `Restore ${removed.name}`)));
+    element("button", { type: "button", "data-design": "restore" }, `Restore ${removed.name}`)));
   document.querySelector("[data-design=keep]").toggleAttribute("hidden", stored().has(current));
   document.querySelector("[data-design=remove]").toggleAttribute("disabled", !stored().has(current));
 }

@@ -168,7 +168,7 @@ function words(name, { rows }) {
 
 // long work: the button turns to Cancel on the click itself, before the server has heard of it
 function run(name) {
-  const button = element("button", { type: "button", class: "plain" });
+  const button = element("button", { type: "button" });
   const bar = element("progress", { max: 1, "aria-label": "progress" }), text = element("span", { role: "status" });
   let field;
   function show(next) {
@@ -191,7 +191,7 @@ function run(name) {
 }
 
 function button(name) {
-  const node = element("button", { type: "button", class: "plain" });
+  const node = element("button", { type: "button" });
   node.addEventListener("click", () => edit(name, true));
   function show(field) {
     node.textContent = field.label;
@@ -202,7 +202,7 @@ function button(name) {
 // inputs in rows: the number of a row that is added here has the focus, and the button below when a row has gone
 function rows(name) {
   const title = element("span", { class: "label", id: `label-${name}` }), list = element("div", { class: "rows" });
-  const add = element("button", { type: "button", class: "plain" });
+  const add = element("button", { type: "button" });
   const node = element("div", { class: "field", role: "group", "aria-labelledby": title.id }, title, list, add);
   let isAdding = false;
   add.addEventListener("click", () => { isAdding = true; edit(name, true); });

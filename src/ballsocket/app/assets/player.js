@@ -15,7 +15,7 @@ function mark(svg, phase, value) {
 }
 function begin(player) {
   const find = (selector) => player.querySelector(selector);
-  const bar = find("input[type=range]"), play = find("button.plain"), output = find("output");
+  const bar = find("input[type=range]"), play = find(".transport button"), output = find("output");
   let pictures = [], count = 0, asked, timer = null, instant = 0;
   function show() {
     let phase = 0, atRim = false;

@@ -49,7 +49,7 @@ function render() {
     const { number, words, one, before } = entry;
     const effect = [before, one].filter((each) => each?.pressure).map((each) => `${each.pressure} ${each.sign}`);
     const small = element("small", {}, one.pressure && effect.join(" → "));
-    const button = element("button", { type: "button", class: "plain" }, words, small);
+    const button = element("button", { type: "button" }, words, small);
     if (entry === current) button.setAttribute("aria-current", "true");
     button.addEventListener("click", () => history.go(number - step()));
     return element("li", {}, button);

@@ -135,10 +135,10 @@ class Viewer {
     this.tools = document.createElement("div");
     this.tools.className = "tools";
     this.tools.innerHTML =
-      `<button type="button" class="plain" data-act="contact">Show the contact</button>` +
-      `<button type="button" class="plain" data-act="+" aria-label="Zoom in">+</button>` +
-      `<button type="button" class="plain" data-act="-" aria-label="Zoom out">−</button>` +
-      `<button type="button" class="plain" data-act="reset">Reset</button><label><input type="checkbox"> Ball</label>` +
+      `<button type="button" data-act="contact">Show the contact</button>` +
+      `<button type="button" data-act="+" aria-label="Zoom in">+</button>` +
+      `<button type="button" data-act="-" aria-label="Zoom out">−</button>` +
+      `<button type="button" data-act="reset">Reset</button><label><input type="checkbox"> Ball</label>` +
       `<label>Section <input type="range" min="-1" max="1" step="0.01" value="1" ` +
       `aria-label="Section plane: right end for none"></label>`;
     this.canvas = this.stage.querySelector("canvas");

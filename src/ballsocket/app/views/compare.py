@@ -20,9 +20,9 @@ from ...reports.style import LineStyle, numbered
 from ..pressing import AXIAL_CURVES, fine_curves, press_charts
 from ..state.screen import MAX_COMPARED, Screen
 from ..view import STRESS_PAUSE, Document, View
-from ..widgets.blocks import Block, sentence, table
+from ..widgets.blocks import Block, sentence
 from ..widgets.controls import Changes, Control, choice, chosen
-from ..widgets.design_table import Designs, design_rows, design_table, press_designs, with_drawings, with_stresses
+from ..widgets.design_table import Designs, design_table, press_designs, report_table, with_drawings, with_stresses
 from ..widgets.words import number_rows
 
 _CHOOSE = ""
@@ -41,7 +41,7 @@ class Compare(View):
     name, title = "compare", "Compare"
     body = """
 <div class="inputs-row" id="compare-inputs"></div>
-<p><button type="button" class="plain" data-tell="compare.keep">Add this design to the comparison</button></p>
+<p><button type="button" data-tell="compare.keep">Add this design to the comparison</button></p>
 <div id="compare-trouble" role="alert"></div><div id="compare-note"></div>
 <div id="compare-table"></div>
 <div id="compare-charts"></div>
@@ -99,10 +99,6 @@ class Compare(View):
         contacts = _contacts(designs)
         models = dict.fromkeys(contacts, catalogue[screen.answered_by])
 
-        def rows() -> list[list[str]]:
-            listed = design_rows(with_stresses(designs), base, screen)
-            return [[label, *(cell.plain for cell in cells)] for label, cells in listed]
-
         def picture(form: str) -> bytes:
             curves, title = fine_curves(contacts, models), f"model {screen.answered_by}"
             return figure_bytes(press_figure(contacts, curves, title, _lines(files), units=screen.reading.units), form)
@@ -110,7 +106,7 @@ class Compare(View):
         return Document(
             picture=picture if contacts else None,
             rows=lambda: number_rows("joint", contacts, screen.reading),
-            sections=lambda: {"joints": ("Designs", [table(["", *files], rows())])},
+            sections=lambda: {"joints": ("Designs", [report_table(with_stresses(designs), base, screen)])},
         )
 
     def asks(self, screen: Screen) -> tuple[list[JointFile], tuple[str, ...]]:
@@ -154,7 +150,7 @@ def _pressed(files: Mapping[str, JointFile], screen: Screen) -> Designs:
         headings[name] = f"<small>head ⌀ {head}, liner {liner}</small>"
         if name != _PRESENT and screen.beside:
             attributes = f"data-tell='compare.remove' data-value='{escape(name)}' aria-label='Remove {escape(name)}'"
-            headings[name] += f"<button type='button' class='plain' {attributes}>Remove</button>"
+            headings[name] += f"<button type='button' {attributes}>Remove</button>"
     return press_designs(files, screen.answered_by, headings)
 
 

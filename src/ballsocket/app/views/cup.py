@@ -188,7 +188,7 @@ def _hint(contact: OffAxisContact) -> str:
         return ""
     angles = escape(" and ".join(f"{name} {angle:g}°" for name, angle in _TYPICAL.items()))
     words = f"This cup opens straight down. Set {angles}"
-    return f"<p><button type='button' class='plain' data-tell='cup.usual'>{words}</button></p>"
+    return f"<p><button type='button' data-tell='cup.usual'>{words}</button></p>"
 
 
 def angle_map(orientations: Orientations, cup: Cup, quantity: str, reading: Reading = METRIC) -> str:

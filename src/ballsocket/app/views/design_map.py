@@ -50,7 +50,7 @@ _HINT = (
     "is shown here beside the present one, which is the white ring.</p>"
 )
 _BUTTONS = "".join(
-    f"<button type='button' class='plain' data-tell='map.{event}'>{words}</button> "
+    f"<button type='button' data-tell='map.{event}'>{words}</button> "
     for event, words in (("use", "Use this design"), ("compare", "Add to the comparison"), ("drop", "Close"))
 )
 _BELOW_ZERO = -1e300
@@ -104,7 +104,7 @@ class DesignMap(View):
   <div><div id="map-picture"></div><div id="map-note"></div></div>
   <div>
     <div data-field="map.sizes"></div>
-    <p><button type="button" class="plain" data-tell="map.best">Show the design with the smallest value</button></p>
+    <p><button type="button" data-tell="map.best">Show the design with the smallest value</button></p>
     <div id="map-point" role="status"></div>
   </div>
 </div>

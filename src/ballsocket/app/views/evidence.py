@@ -157,10 +157,7 @@ def _case_table(screen: Screen) -> str:
     return f"{offer}{table(heads, rows, 'text')}{_CONTENTS}"
 
 
-_OFFER = (
-    "<p><button type='button' class='plain' data-tell='evidence.allowable'>Use the liner's allowable pressure</button>"
-    "</p>"
-)
+_OFFER = "<p><button type='button' data-tell='evidence.allowable'>Use the liner's allowable pressure</button></p>"
 _CONTENTS = (
     "<p class='quiet'>The pack has a page with the decision on each limit, the worst cases and their figures, all "
     "numbers as JSON, the question and checksums. It takes some seconds, with wear minutes.</p>"
@@ -169,7 +166,7 @@ _CONTENTS = (
 
 def _pack_html(pack: EvidencePack, units: Units) -> str:
     """Return the decisions on the limits, failures first, then the other conclusions and the worst cases."""
-    take = "<p><button type='button' class='plain' data-tell='evidence.take'>Download the pack (ZIP)</button></p>"
+    take = "<p><button type='button' data-tell='evidence.take'>Download the pack (ZIP)</button></p>"
     limits, decisions = pack.record["limits"], []
     verdicts = [Verdict[limit["verdict"].upper()] for limit in limits]
     for verdict, limit in sorted(zip(verdicts, limits, strict=True), key=itemgetter(0), reverse=True):

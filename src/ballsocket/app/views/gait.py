@@ -44,11 +44,11 @@ _FILM_SECONDS = 300.0
 _UPLOAD = """<div class="field">
 <label class="label" for="gait-own">Custom cycle (table: phase or time, force, angles)</label>
 <input id="gait-own" type="file" accept=".csv,.txt,.dat,.mot,.sto" data-tell-file="gait.own">
-<button type="button" class="plain" data-tell="gait.sample">Save a sample</button>
+<button type="button" data-tell="gait.sample">Save a sample</button>
 <div id="gait-question" role="alert"></div></div>"""
 _SHOWN = """<p class="quiet" id="gait-load"></p><div id="gait-numbers"></div>
 <div class="player"><span id="gait-at" data-at hidden></span>
-<div class="transport" hidden><button type="button" class="plain">▶ Play</button>
+<div class="transport" hidden><button type="button">▶ Play</button>
 <input type="range" min="0" step="1" aria-label="instant of the cycle"></div><output></output>
 <div class="panes"><div><div data-field="gait.field"></div><div id="gait-viewer"></div><div id="gait-flat"></div>
 <div data-field="gait-film.run"></div><div id="gait-film-trouble" role="alert"></div></div>
@@ -206,7 +206,7 @@ class Gait(LongView):
 
 _UNITS_QUESTION = (
     "<p class='refused'>{} has heads without units. Read phases in %, times in s, forces in N and angles in degrees? "
-    "<button type='button' class='plain' data-tell='gait.units'>Yes</button></p>"
+    "<button type='button' data-tell='gait.units'>Yes</button></p>"
 )
 
 

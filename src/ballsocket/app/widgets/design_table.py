@@ -46,20 +46,6 @@ class ComparedDesign:
     von_mises: float | None = None
 
 
-@dataclass(frozen=True, kw_only=True)
-class Cell:
-    """Text of a cell with the difference from the base, and its class: "yes", "no" or "quiet"."""
-
-    text: str
-    difference: str = ""
-    kind: str = ""
-
-    @property
-    def plain(self) -> str:
-        """Text with the difference in brackets, for reports."""
-        return f"{self.text} ({self.difference})" if self.difference else self.text
-
-
 Designs = Mapping[str, ComparedDesign]  # designs by their names, the one on the screen first
 
 
@@ -106,19 +92,17 @@ def with_drawings(designs: Designs) -> Designs:
 def design_table(designs: Designs, base: str, screen: Screen, names: Sequence[str] = tuple(CONTACT)) -> Block:
     """Return a table with differences from the base, which stand below the numbers."""
     heads = [[name, "", "", "", design.heading] for name, design in designs.items()]
-    rows = [
-        styled_row([label, *([cell.text, cell.difference, cell.kind] for cell in cells)])
-        for label, cells in design_rows(designs, base, screen, names)
-    ]
+    rows = [styled_row([label, *cells]) for label, cells in design_rows(designs, base, screen, names)]
     return table(["", *heads], rows, "designs")
 
 
 def design_rows(
     designs: Designs, base: str, screen: Screen, names: Sequence[str] = tuple(CONTACT)
-) -> list[tuple[str, list[Cell]]]:
+) -> list[tuple[str, list[list[str]]]]:
     """Tabulate designs in columns: verdict, checks, validity, dimensions, materials and the results of some `names`.
 
-    A load that needs the real cup has no checks.
+    A load that needs the real cup has no checks. A cell has its text, and may have the difference from the base and a
+    style.
     """
     listed, reading = list(designs.values()), screen.reading
     checks: list[Sequence[Check]] = [
@@ -133,11 +117,11 @@ def design_rows(
     for name in _DIMENSIONS[screen.size]:
         unit = reading.unit(JOINT[name])
         lengths = [float(getattr(design.file.joint, name)) * unit.factor for design in listed]
-        cells = [Cell(text=box_text(length, unit.text)) for length in lengths]
+        cells = [[box_text(length, unit.text)] for length in lengths]
         rows.append((f"{JOINT[name].title}{unit.text_in_brackets}", cells))
     for part in ("liner", "ball"):
         materials = [getattr(design.file.joint, part) for design in listed]
-        rows.append((part, [Cell(text=material_label(material, "custom numbers")) for material in materials]))
+        rows.append((part, [[material_label(material, "custom numbers")] for material in materials]))
     for quantity in (CONTACT[name] for name in CONTACT if name in names):
         unit = reading.unit(quantity)
         values = [float(getattr(design.contact, quantity.name, nan)) * unit.factor for design in listed]
@@ -146,29 +130,39 @@ def design_rows(
     return rows
 
 
-def _number(value: float, base: float) -> Cell:
+def report_table(designs: Designs, base: str, screen: Screen) -> Block:
+    """Return a table for a report, with the differences from the base in brackets."""
+    brackets = "{} ({})".format
+    rows = [
+        [label, *(brackets(*cell[:2]) if any(cell[1:2]) else cell[0] for cell in cells)]
+        for label, cells in design_rows(designs, base, screen)
+    ]
+    return table(["", *designs], rows)
+
+
+def _number(value: float, base: float) -> list[str]:
     if value == base or isnan(value):
-        return Cell(text=number_text(value))
-    return Cell(text=number_text(value), difference=percent(float(relative_deviation(value, base)), "+"))
+        return [number_text(value)]
+    return [number_text(value), percent(float(relative_deviation(value, base)), "+")]
 
 
-def _verdict(design: ComparedDesign, checks: Sequence[Check]) -> Cell:
+def _verdict(design: ComparedDesign, checks: Sequence[Check]) -> list[str]:
     verdict, sentence = (Verdict.UNDECIDED, design.limit) if design.limit else verdict_of(checks)
     difference = "" if verdict is Verdict.KEPT else sentence
-    return Cell(text=f"{verdict.sign} {verdict.word}", difference=difference, kind=VERDICT_KINDS[verdict])
+    return [f"{verdict.sign} {verdict.word}", difference, VERDICT_KINDS[verdict]]
 
 
-def _ratio(check: Check | None) -> Cell:
+def _ratio(check: Check | None) -> list[str]:
     if check is None or check.ratio is None:
-        return Cell(text="–", kind="quiet")
+        return ["–", "", "quiet"]
     bar = f"estimate, {range_text(check.ratio)}" if check.ratio.is_estimate else ""
     text = f"{check.verdict.sign} {100 * check.ratio.value:.0f} %"
-    return Cell(text=text, difference=bar, kind="doubt" if check.is_near else VERDICT_KINDS[check.verdict])
+    return [text, bar, "doubt" if check.is_near else VERDICT_KINDS[check.verdict]]
 
 
-def _validity(design: ComparedDesign, reading: Reading) -> Cell:
+def _validity(design: ComparedDesign, reading: Reading) -> list[str]:
     if design.contact is None:
-        return Cell(text=design.reason, kind="no")
+        return [design.reason, "", "no"]
     notes = [*filter(None, [design.limit]), *design.contact.notes]
     kind, text = ("yes", "✓ yes") if bool(design.contact.valid) and not design.limit else ("no", "✗ no")
-    return Cell(text=text, difference="; ".join(map(reading.units.sentence, notes)), kind=kind)
+    return [text, "; ".join(map(reading.units.sentence, notes)), kind]
