@@ -58,14 +58,6 @@ def user(profile, address):
     someone.page.close()
 
 
-def each_in_turn(user):
-    """One page for several tests that need no history: a page of its own costs a process of the browser."""
-    user.page.set_viewport_size({"width": WIDE, "height": 900})
-    yield user
-    assert not user.errors
-    user.page.evaluate("localStorage.clear()")
-
-
 @pytest.fixture(scope="session")
 def open_page(profile, address):
     return User(profile, address)
@@ -73,18 +65,17 @@ def open_page(profile, address):
 
 @pytest.fixture
 def reader(open_page):
-    yield from each_in_turn(open_page)
+    """One page for several tests that need no history: a page of its own costs a process of the browser."""
+    open_page.page.set_viewport_size({"width": WIDE, "height": 900})
+    yield open_page
+    assert not open_page.errors
+    open_page.page.evaluate("localStorage.clear()")
 
 
 @pytest.fixture(scope="session")
 def examined_page(browser, address):
     """Scripts of a test run in it, against the policy of the page; it ends with the browser."""
     return User(opened_profile(browser, address, bypass_csp=True).__enter__(), address)
-
-
-@pytest.fixture
-def examiner(examined_page):
-    yield from each_in_turn(examined_page)
 
 
 @pytest.fixture

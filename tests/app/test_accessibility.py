@@ -40,6 +40,7 @@ CUT = script("cut.js")
 def shown(request, examined_page):
     """A view of a design on one page for all its tests, with the results of its work."""
     view, design = request.param
+    examined_page.page.set_viewport_size({"width": WIDE, "height": 900})
     page = examined_page.open(f"?view={view}&{DESIGNS[design]}{MORE.get(view, '')}").page
     finish_work(page, view)
     yield examined_page

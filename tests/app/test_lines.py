@@ -41,7 +41,7 @@ def see_loss(user):
     user.until("getComputedStyle(document.querySelector('#view')).opacity < 0.6")
 
 
-@pytest.mark.parametrize("seconds", [4, 12])  # a page gives up its line after 10 s
+@pytest.mark.parametrize("seconds", [3, 11])  # a page gives up its line after 10 s
 def test_a_line_that_is_cut_or_silent_heals_and_never_contradicts(browser, address, seconds):
     """Cut connections end; silent ones stay open without data, as those of a network without signal."""
     with opened_line(browser, address) as (cut, one), opened_line(browser, address) as (silent, other):

@@ -36,6 +36,7 @@ from ballsocket.files.joint_file import JointFile
 from ballsocket.hip import Archard, HipSimulation, Lubricant, iso_14242_1, named_cycle
 from ballsocket.hip.config import read_hip
 
+from ..refusals import text_tables
 from .asking import blocks, cells, does, edits, opened, saved, told, trouble
 
 LINK = "view=gait&preset=hip-36&cup.inclination=45&cup.anteversion=15&load.force=3000"
@@ -380,20 +381,10 @@ def test_a_question_is_read_as_it_is_typed():
     assert not told(page, "evidence-trouble")
 
 
-@pytest.mark.parametrize(
-    ("name", "value", "sentence"),
-    [
-        ("matrix", "force", "needs a name and ="),
-        ("matrix", "liner = uhmwpe, pom", "'liner' in the matrix"),
-        ("tolerances", "clearance", "needs a name and ="),
-        ("tolerances", "clearance = wide", "clearance"),
-        ("tolerances", "clearance = 0.1 +- 0.02 mm; clearance = 0.1 +- 0.05 mm", "clearance is given twice"),
-        ("matrix", "force = 2 kN; force = 3 kN", "force is given twice"),
-        ("accuracy", "half", "accuracy"),
-        ("friction", "5", "a coefficient of friction is 0 to 2"),
-        ("question", "/etc/passwd", "is a path, and words are needed"),
-    ],
-)
+(QUESTIONS,) = text_tables(Path(__file__).parent / "refused_questions.txt")
+
+
+@pytest.mark.parametrize(("name", "value", "sentence"), QUESTIONS)
 def test_what_is_wrong_with_a_question_is_said_in_the_view(name, value, sentence):
     page = opened(EVIDENCE)
     edits(page, f"evidence.{name}", value)

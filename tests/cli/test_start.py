@@ -19,7 +19,6 @@ from .command import run
 COMMANDS = load_commands()
 HEAVY = {"dask", "jax", "jinja2", "matplotlib", "mcp", "multiprocessing", "numba", "pandas", "pint", "pydantic"}
 HEAVY |= {"scipy", "skfem", "torch", "xarray"}
-NAMES = [*COMMANDS]
 
 
 def modules_after(*words):
@@ -92,7 +91,7 @@ SIZES = re.compile(r"ring_width|arc_of_cover|chamfer|element_size|tilt|hysteresi
 UNIT = re.compile(r" in (mm|MPa|N|degrees|s/mm|mm/s|seconds)\b|'\d+ mm'|\d kN|\d deg")
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", COMMANDS)
 def test_every_option_states_its_unit_and_its_default(name):
     for option in typer.main.get_command(app).commands[name].params:
         text, quantity = option.help, QUANTITIES.get(option.name)

@@ -31,7 +31,7 @@ def test_first_cycle_has_the_contacts_of_the_off_axis_model(surface):
 
 
 def test_elasticity_changes_volume_and_depth_slightly():
-    cup, springs = report_after(elastic("cup"), 1e6), report_after(hip(cycle=iso_14242_1(50)), 1e6)
+    cup, springs = report_after(elastic("cup"), 2e5), report_after(hip(cycle=iso_14242_1(50)), 2e5)
     assert cup.volume == pytest.approx(springs.volume, rel=1e-2)
     assert cup.depth == pytest.approx(springs.depth, rel=3e-2)
     assert cup.volume != springs.volume
@@ -78,9 +78,9 @@ def test_swinging_loads_converge_in_a_worn_bore():
 
 @pytest.mark.long
 def test_creep_lowers_the_pressures_of_an_elastic_socket():
-    crept = report_after(elastic(creep=logarithmic(), **QUICK), 3e4)
+    crept = report_after(elastic(creep=logarithmic(), **QUICK), 1e4)
     assert crept.converged
-    assert crept.creep_depth == pytest.approx(report_after(hip(creep=logarithmic(), **QUICK), 3e4).creep_depth, rel=0.1)
+    assert crept.creep_depth == pytest.approx(report_after(hip(creep=logarithmic(), **QUICK), 1e4).creep_depth, rel=0.1)
     assert crept.max_pressure < 0.8 * elastic(**QUICK).first.max_pressure
 
 

@@ -2,21 +2,12 @@
 
 import json
 import pickle
+from pathlib import Path
 
 import pytest
 
 import ballsocket as bs
-from ballsocket.core.kinds import (
-    CUBIC_MILLIMETRES,
-    MEGAPASCALS,
-    MICROMETRES,
-    MILLIMETRES,
-    NANOMETRES,
-    NEWTON_METRES,
-    NEWTONS,
-    PERCENT,
-    Unit,
-)
+from ballsocket.core import kinds
 from ballsocket.core.unit_systems import Amount, Sentence, Units, from_json, to_json
 from ballsocket.reports import study_plots
 from ballsocket.studies.calibration import describe_calibration
@@ -25,24 +16,14 @@ from ballsocket.studies.distributions import tolerance
 from ballsocket.studies.limits import Limit
 
 from ..cli.command import printed
+from ..refusals import text_tables
+
+(ROWS,) = text_tables(Path(__file__).parent / "amounts.txt")
+AMOUNTS = [(Amount(float(value), getattr(kinds, name)), *texts) for value, name, *texts in ROWS]
+AMOUNTS.append((Amount(2e3, kinds.Unit("kN", 1e-3)), "2 kN", "449.6 lbf"))
 
 
-@pytest.mark.parametrize(
-    ("amount", "metric", "imperial"),
-    [
-        (Amount(25.4, MILLIMETRES), "25.4 mm", "1 in"),
-        (Amount(4.4482216, NEWTONS), "4.448 N", "1 lbf"),
-        (Amount(2e3, Unit("kN", 1e-3)), "2 kN", "449.6 lbf"),
-        (Amount(750.0, MEGAPASCALS), "750 MPa", "108.8 ksi"),
-        (Amount(1.0, MEGAPASCALS), "1 MPa", "145 psi"),
-        (Amount(0.0254, MICROMETRES), "25.4 µm", "1 mil"),
-        (Amount(2.54e-5, MICROMETRES), "0.0254 µm", "1 µin"),
-        (Amount(2.54e-5, NANOMETRES), "25.4 nm", "1 µin"),
-        (Amount(16387.064, CUBIC_MILLIMETRES), "16387 mm³", "1 in³"),
-        (Amount(1e3, NEWTON_METRES), "1 N m", "8.851 lbf in"),
-        (Amount(0.5, PERCENT), "50 %", "50 %"),
-    ],
-)
+@pytest.mark.parametrize(("amount", "metric", "imperial"), AMOUNTS)
 def test_amounts_of_a_sentence_are_written_in_the_units_of_the_reader(amount, metric, imperial):
     """Texts and names stay, whatever numbers they have; a sentence in another one keeps its amounts."""
     inner = Sentence("at most {} of {}", amount, "the {} 3 mm liner")
