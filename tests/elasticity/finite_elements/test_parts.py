@@ -3,6 +3,7 @@
 from dataclasses import replace
 from itertools import product
 from math import inf, pi, radians
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -126,6 +127,21 @@ def test_a_contact_of_few_elements_has_a_pole_pressure(pair, elements):
     assert contact.last <= 3
     exact = bs.Exact().press(RIGID, half_angle=half_angle)
     assert contact.pole_pressure == pytest.approx(exact.pole_pressure, rel=0.02)
+
+
+@pytest.mark.parametrize(("order", "richardson", "factor"), [(1, 1.0, 3.0), (2, 3.0, 1.0)])
+def test_errors_are_extrapolated_and_bounded_from_below(order, richardson, factor):
+    fine, coarse = (
+        SimpleNamespace(edge_element=np.array([0.1]), **dict.fromkeys(solver.QUANTITIES, np.array([value])))
+        for value in (1.0, 1.6)
+    )
+    errors = solver.estimate_errors("force", fine, coarse, order)
+    assert errors["force"] == 0
+    assert errors["energy"] == pytest.approx(2.0 * 0.6 / richardson)
+    bounded = solver.estimate_errors("force", fine, fine, order)
+    shares = {"stiffness": 1.0, "half_angle": 0.7, "indentation": 0.03, "energy": 0.07, "pressure_integral": 0.02}
+    shares |= {"force": 0.0, "max_pressure": 0.2, "pole_pressure": 0.2}
+    assert bounded == pytest.approx({name: share * factor * 0.01 for name, share in shares.items()})
 
 
 def test_the_stress_near_a_rim_is_solved_for():
