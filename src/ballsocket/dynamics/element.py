@@ -236,8 +236,8 @@ class ForceElement(OneLine):
         is_free = centre.indentation <= -constants.smoothing and centre.distance > 0.0
         if is_free and constants.film_damping == 0.0 and self.relaxation is None:
             return Load(_ZERO_VECTOR, _ZERO_VECTOR, 0.0, self, centre, NO_CONTACT, position, velocity, spin)
-        if centre.indentation > self._validity_monitor.limit:
-            self._validity_monitor.check(centre.indentation)
+        if centre.indentation > self.validity_monitor.limit:
+            self.validity_monitor.check(centre.indentation)
         contact = elastic_contact(self.potential, centre, constants)
         if is_adhesive:
             contact = remove_tension_damping(contact)
@@ -250,7 +250,7 @@ class ForceElement(OneLine):
         r, v, w = split_states(position, velocity, spin)
         with numpy.errstate(all="ignore"):  # states without a result have a status
             centre = self._centre_if_attached(ball_centre_at(*r, self.constants.clearance), attached)
-            self._validity_monitor.check_array(centre.indentation)
+            self.validity_monitor.check_array(centre.indentation)
             contact = elastic_contact(self.potential, centre, self.constants)
             contact = remove_tension_damping(contact) if self.stretch > 0.0 else contact
             contact, liner = self._relax(contact, relaxed_force, r[0])
@@ -309,7 +309,7 @@ class ForceElement(OneLine):
         return float(max(depths[valid], default=0.0))
 
     @cached_property
-    def _validity_monitor(self) -> ValidityMonitor:
+    def validity_monitor(self) -> ValidityMonitor:
         """Monitor that logs a warning when an indentation leaves the validity of the model."""
         return ValidityMonitor(model=self.model, joint=self.joint.with_floats(), wall=self.wall)
 
