@@ -221,6 +221,19 @@ def test_each_element_warns_once_that_its_model_is_not_valid(caplog):
     assert first.startswith("hertz at an indentation of 0.05 mm: outside ε")
 
 
+def test_contacts_that_begin_too_narrow_for_their_model_and_trial_states_are_not_reported(caplog):
+    element = bs.ForceElement(bs.HessForsbach(), HIP)
+    for depth in (1e-6, 0.003, 0.05):
+        element((0.0, 0.0, C + depth))
+    assert not element.model.press(HIP, indentation=0.003).valid
+    assert caplog.messages == []
+    with element.validity_monitor.paused():
+        element((0.0, 0.0, C + 0.7))  # a trial state
+    assert caplog.messages == []
+    element((0.0, 0.0, C + 0.7))
+    assert len(caplog.messages) == 1
+
+
 def test_normal_force_of_a_leaving_ball_is_zero_and_never_tensile():
     element = bs.ForceElement(bs.HessForsbach(), HIP, damping=Damping(hysteresis=0.01))
     still = element((0.0, 0.0, C + 0.05)).force[2]

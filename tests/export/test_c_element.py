@@ -190,11 +190,11 @@ def test_a_changed_joint_is_valid_where_its_own_export_is(name, joint, factors, 
     own = Library(element, tmp_path, name="own")
     tuned = Library(ForceElement(named_model(name), joint), tmp_path)
     tuned.parameters[:] = own.defaults
-    positions = [(0.0, 0.0, clearance + depth) for depth in np.geomspace(1e-4, 1.05, 200) * element.wall]
+    positions = [(0.0, 0.0, clearance + depth) for depth in np.geomspace(1e-6, 1.05, 200) * element.wall]
     valid = [own.valid(position) for position in positions]
     assert [tuned.valid(position) for position in positions] == valid
     assert not valid[-1]
-    assert any(valid) == (joint is not SUSPENSION)
+    assert any(valid)
 
 
 def test_a_joint_without_a_law_is_refused(tmp_path):

@@ -13,7 +13,7 @@ from typing import Annotated, Any, ClassVar
 
 import typer
 
-from ..core.checks import check_text, known_name
+from ..core.checks import check_text, known_name, shown
 from ..core.kinds import Kind
 from ..core.storage.atomic_files import check_ending
 from ..dynamics import Bristles, Damping, ForceElement, Friction, PreloadedElement, Prony, Restitution
@@ -46,9 +46,13 @@ class PronyTerms(Parsed):
 
     @classmethod
     def parse(cls, name: str, value: Any) -> Prony:
-        pairs = [text.partition(":") for text in check_text(name, value).split(",")]
+        pairs = [term.split(":") for term in check_text(name, value).split(",")]
+        if any(len(pair) != 2 for pair in pairs):
+            raise ValueError(
+                f"{name} must be pairs of share and time, such as '0.3: 0.1 s, 0.2: 10 s', got {shown(value)}"
+            )
         return Prony(
-            terms=tuple((parse(name, share, Kind.NUMBER), parse(name, time, Kind.DURATION)) for share, _, time in pairs)
+            terms=tuple((parse(name, share, Kind.NUMBER), parse(name, time, Kind.DURATION)) for share, time in pairs)
         )
 
 

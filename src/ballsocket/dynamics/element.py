@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -11,15 +10,14 @@ from typing import Any
 
 import numpy
 
-from ..contact import Contact, Model
+from ..contact import Model
 from ..contact.assembly import check_joint
 from ..contact.joint_curve import joint_curve
 from ..contact.octave_curve import OctaveCurve
 from ..core import arrays
-from ..core.arrays import Array, concrete_values, is_plain_number, to_common_arrays, where
+from ..core.arrays import Array, is_plain_number, to_common_arrays, where
 from ..core.checks import check_number, check_vectors, require, shown
 from ..core.display import OneLine
-from ..core.validity import Range
 from ..lubrication import Lubricant
 from ..models.adhesion import AdhesiveSocket
 from ..problem import Joint
@@ -33,9 +31,8 @@ from .load import Load, add_bristle_loads, split_internal_state, vector_componen
 from .matrices import join_vector
 from .potential import Potential, adhesion_potential, evaluate_curve, potential_of
 from .reaction import NO_CONTACT, Elastic, elastic_contact, force_and_moment, remove_tension_damping
+from .validity_monitor import ValidityMonitor
 from .viscoelastic import Prony, relaxed_contact
-
-_log = logging.getLogger("ballsocket.dynamics")
 
 _DEPTHS = 129  # number of indentations at which validity is evaluated
 
@@ -239,8 +236,8 @@ class ForceElement(OneLine):
         is_free = centre.indentation <= -constants.smoothing and centre.distance > 0.0
         if is_free and constants.film_damping == 0.0 and self.relaxation is None:
             return Load(_ZERO_VECTOR, _ZERO_VECTOR, 0.0, self, centre, NO_CONTACT, position, velocity, spin)
-        if centre.indentation > self._validity_monitor.limit:
-            self._validity_monitor.check(centre.indentation)
+        if centre.indentation > self.validity_monitor.limit:
+            self.validity_monitor.check(centre.indentation)
         contact = elastic_contact(self.potential, centre, constants)
         if is_adhesive:
             contact = remove_tension_damping(contact)
@@ -253,7 +250,7 @@ class ForceElement(OneLine):
         r, v, w = split_states(position, velocity, spin)
         with numpy.errstate(all="ignore"):  # states without a result have a status
             centre = self._centre_if_attached(ball_centre_at(*r, self.constants.clearance), attached)
-            self._validity_monitor.check_array(centre.indentation)
+            self.validity_monitor.check_array(centre.indentation)
             contact = elastic_contact(self.potential, centre, self.constants)
             contact = remove_tension_damping(contact) if self.stretch > 0.0 else contact
             contact, liner = self._relax(contact, relaxed_force, r[0])
@@ -303,7 +300,7 @@ class ForceElement(OneLine):
 
     @cached_property
     def valid_depth(self) -> float:
-        """Largest indentation in mm at which the contact model is valid; 0 if no indentation is valid.
+        """Largest indentation in mm at which the model is valid; 0 if it is below a thousandth of the wall.
 
         Lower limits of the contact size are ignored: every contact passes through them at first touch.
         """
@@ -312,7 +309,7 @@ class ForceElement(OneLine):
         return float(max(depths[valid], default=0.0))
 
     @cached_property
-    def _validity_monitor(self) -> ValidityMonitor:
+    def validity_monitor(self) -> ValidityMonitor:
         """Monitor that logs a warning when an indentation leaves the validity of the model."""
         return ValidityMonitor(model=self.model, joint=self.joint.with_floats(), wall=self.wall)
 
@@ -394,53 +391,3 @@ def loss_constants(damping: Damping | None, friction: Friction | None) -> dict[s
         "stribeck_speed": friction.stribeck_speed,
         "viscous": friction.viscous,
     }
-
-
-@dataclass
-class ValidityMonitor:
-    """Monitor that logs one warning when an indentation first leaves the validity range of a model.
-
-    Contacts below the range do not count, because every impact passes through them.
-    """
-
-    model: Model
-    joint: Joint
-    wall: float  # largest indentation in mm that wall thickness and model allow
-    limit: float = 0.0  # largest indentation in mm that needs no check; infinite after the warning
-
-    def check_array(self, indentation: Array) -> None:
-        """Check the largest of some indentations in mm, and log a warning if the model is invalid there."""
-        depths = concrete_values(indentation) if self.limit < inf else None
-        if depths is not None and depths.size:
-            self.check(float(numpy.max(depths, initial=0.0, where=depths <= self.wall)))
-
-    def check(self, indentation: float) -> None:
-        """Check an indentation in mm, and log a warning if the model is invalid there.
-
-        Indentations beyond the wall are reported by the status of the load instead.
-        """
-        if not self.limit < indentation <= self.wall:
-            return
-        contact = self.model.press(self.joint, indentation=indentation)
-        if self._exceeds_validity_range(contact):
-            self.limit = inf
-            _log.warning("%s at an indentation of %.3g mm: %s", self.model.name, indentation, "; ".join(contact.notes))
-            return
-        deeper = min(max(2 * indentation, 1e-3 * self.wall), self.wall)
-        for _ in range(6):
-            if not self._exceeds_validity_range(self.model.press(self.joint, indentation=deeper)):
-                break
-            deeper = (indentation + deeper) / 2
-        else:
-            deeper = indentation
-        self.limit = deeper
-
-    def _exceeds_validity_range(self, contact: Contact) -> bool:
-        """Check if a contact is invalid for a reason other than its small size."""
-
-        def holds_for_larger_contact(limit: Range) -> bool:
-            increases_with_size = isinstance(limit.quantity, str) and not limit.quantity.startswith("joint.")
-            is_below = increases_with_size and bool(limit.quantity_of(contact) < limit.low)
-            return is_below or bool(limit.holds(contact))
-
-        return not contact.valid and not all(map(holds_for_larger_contact, contact._validity_ranges))

@@ -299,14 +299,17 @@ def add_bristle_loads(load: Load, bristles: Bristles, deflection: Any) -> Load:
 def split_internal_state(state: Any, count: int, like: Any, allowed: str) -> tuple[Array, ...]:
     """Split an internal state into components: numbers if `like` is None, otherwise arrays of its library.
 
-    Raises ValueError, which begins with `allowed`: another number of components than `count`.
+    Raises ValueError, which begins with `allowed`: another number of components than `count`, or texts.
     """
     if like is not None and type(state) in (tuple, list):
         state = arrays.namespace(like).asarray(numpy.asarray(state, dtype=float), dtype=like.dtype)
-    parts = vector_components(tuple(state) if type(state) is list else state)
+    try:
+        parts = tuple(part + 0.0 for part in vector_components(tuple(state) if type(state) is list else state))
+    except (AttributeError, TypeError, IndexError):  # a number, or texts
+        parts = ()
     if len(parts) != count:
         raise ValueError(f"{allowed}, got {shown(state)}")
-    return tuple(part + 0.0 for part in parts)
+    return parts
 
 
 def vector_components(packed: Any) -> Any:

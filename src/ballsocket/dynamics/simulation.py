@@ -154,9 +154,10 @@ def _integrate_contact_state(
     state, end_reason = numpy.array([*initial, *(0.0,) * sum(element.internal_states.values()), 0.0, 0.0]), ""
     states, attachments = [state], [integrator.is_touching(state)]
     try:
-        for next_state, attached in integrator.iterate_states(state, h * numpy.arange(count + 1), h):
-            states.append(next_state)
-            attachments.append(attached)
+        with element.validity_monitor.paused():
+            for next_state, attached in integrator.iterate_states(state, h * numpy.arange(count + 1), h):
+                states.append(next_state)
+                attachments.append(attached)
     except _NoLoad as error:
         end_reason = f"after {h * (len(states) - 1):g} s: {str(error) or 'the integration failed'}"
     results = numpy.array(states)

@@ -17,13 +17,15 @@ import numpy
 
 from ..contact import Model
 from ..core.arrays import Array, Numbers, where
-from ..core.checks import require
+from ..core.checks import check_number, require, shown
 from ..core.sources import Source
 from ..models.foundation import RadialFoundation
 from ..models.kinematics import linear_kinematics
 from ..problem import Joint
 from .potential import Potential, potential_of
 from .reaction import Elastic
+
+_SHORTEST_TIME = 1e-15  # shortest relaxation time in s; a shorter one vanishes in the time of an integration
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,22 +37,33 @@ class Prony:
     Parameters
     ----------
     terms : tuple of (float, float)
-        Shares g_i, above 0 and with a sum below 1, and relaxation times τ_i in s. g∞ is 1 minus the sum.
+        Shares g_i, above 0 and with a sum below 1, and relaxation times τ_i in s, 1e-15 or more. g∞ is 1 minus the sum.
 
     Raises
     ------
     ValueError
-        No terms; a share or a time that is not positive; shares with a sum of 1 or more.
+        No terms; a share that is not positive; a time that is too short; shares with a sum of 1 or more.
+    TypeError
+        Terms that are no pairs of numbers.
     """
 
     terms: tuple[tuple[float, float], ...]
 
     def __post_init__(self) -> None:
-        terms = tuple((float(share), float(time)) for share, time in self.terms)
+        try:
+            pairs = [(share, time) for share, time in self.terms]
+        except (TypeError, ValueError) as error:
+            raise TypeError(
+                f"terms must be pairs of a share and a relaxation time (s), got {shown(self.terms)}"
+            ) from error
+        terms = tuple(
+            (check_number("a share", share), check_number("a relaxation time", time)) for share, time in pairs
+        )
         require("the number of terms", len(terms), len(terms) > 0, "a relaxation modulus needs at least one term")
         for share, time in terms:
             require("a share", share, 0.0 < share < 1.0, "it must be above 0 and below 1")
-            require("a time", time, 0.0 < time < inf, "a relaxation time (s) must be above 0 and finite")
+            valid = _SHORTEST_TIME <= time < inf
+            require("a relaxation time", time, valid, f"it must be at least {_SHORTEST_TIME:g} s and finite")
         total = sum(share for share, _ in terms)
         require("the sum of the shares", total, total < 1.0, "it must be below 1, or no modulus remains at long times")
         object.__setattr__(self, "terms", terms)

@@ -22,6 +22,7 @@ from ..dynamics.bristles import Bristles
 from ..dynamics.load import Load, add_bristle_loads, contact_state_of
 from ..dynamics.potential import CurvePotential, curve_potential
 from ..dynamics.reaction import Elastic
+from ..dynamics.validity_monitor import FIRST_TOUCH, is_lower_limit
 from ..dynamics.viscoelastic import relaxed_contact
 from ..models.closed_form import ClosedFormSolution
 from ..problem import Joint
@@ -194,11 +195,10 @@ class Recording:
         if self.joint is None:
             return {"valid": depth <= self.element.valid_depth}
         wall = self.constants.wall
-        contact, first_touch, deepest = (self._pressed(self.joint, each) for each in (depth, 1e-3 * wall, wall))
+        contact, first_touch, deepest = (self._pressed(self.joint, each) for each in (depth, FIRST_TOUCH * wall, wall))
         valid = depth <= wall
         for limit in self.element.model.validity:
-            is_lower = logical_not(limit.holds(first_touch)) & limit.holds(deepest)
-            valid = valid & (limit.holds(contact) | is_lower)
+            valid = valid & (limit.holds(contact) | is_lower_limit(limit, first_touch, deepest))
         if self.joint.strengths():
             valid = valid & logical_not(contact.utilisation > MAX_ELASTIC_UTILISATION)
         return {"valid": (depth <= 0.0) | valid}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy
@@ -22,10 +23,11 @@ _SHARES = numpy.geomspace(1.0, 0.01, 60)
 class TimeStepAdvice:
     """Time steps in s for a ball of `mass` in kg in a fixed socket, at indentations up to `depth` in mm.
 
-    `stable` is the largest stable step of an explicit integration: 2/sqrt(k/m) with the largest stiffness k in N/mm,
-    and at most twice the shortest time of a relaxing liner. `accurate` is the largest step with which a bounce up to
-    that depth keeps its energy within 1 %, whenever the ball touches within a step; the integration is semi-implicit
-    (symplectic) Euler, as in MuJoCo.
+    `stable` is the largest stable step of semi-implicit (symplectic) Euler, as in MuJoCo, with the largest stiffness k
+    in N/mm: 2/sqrt(k/m) without damping. Friction and lubricant are not considered. It is at most the shortest time of
+    a relaxing liner, so that Euler steps of its forces may precede or follow the position. `accurate` is the largest
+    step with which a bounce up to that depth keeps its energy within 1 %, whenever the ball touches within a step, by
+    the elastic force alone.
     """
 
     mass: float
@@ -55,13 +57,31 @@ def time_step_advice(element: ForceElement | PreloadedElement, depth: float, mas
     else:
         _, forces, stiffnesses = element.potential(depths)
     stiffness = float(numpy.max(stiffnesses))
-    stable = 2.0 * (1e-3 * mass / stiffness) ** 0.5
-    if isinstance(element, ForceElement) and element.relaxation is not None:
-        stable = min(stable, 2.0 * float(numpy.min(element.relaxation.times)))
+    constants = element.constants
+    damping = constants.hysteresis * float(numpy.max(forces)) + constants.time * stiffness
+    relaxation = element.relaxation if isinstance(element, ForceElement) else None
+    stable = _stable_step(1e-3 * mass, stiffness, damping, () if relaxation is None else relaxation.terms)
     changes = [_energy_change(depths, forces[-len(depths) :], mass, share * stable) for share in _SHARES]
     too_large = numpy.flatnonzero(~(numpy.array(changes) <= _ALLOWED_ENERGY_ERROR))
     accurate = float(_SHARES[min(too_large.max(initial=-1) + 1, len(_SHARES) - 1)]) * stable
     return TimeStepAdvice(mass=mass, depth=depth, stiffness=stiffness, stable=stable, accurate=accurate)
+
+
+def _stable_step(mass: float, stiffness: float, damping: float, terms: Sequence[tuple[float, float]]) -> float:
+    """Compute the largest stable step h in s of semi-implicit Euler (t, N/mm, N s/mm), at most the shortest time.
+
+    A step that reverses all signs is at the limit: k h²/(4 m) (1 + Σ g h/(2 τ - h)) + c h/(2 m) = 1.
+    """
+    from scipy.optimize import brentq  # slow to import
+
+    def excess(step: float) -> float:
+        relaxed = sum(share * step / (2.0 * time - step) for share, time in terms)
+        return 0.25 * stiffness * step * step / mass * (1.0 + relaxed) + 0.5 * damping * step / mass - 1.0
+
+    # without relaxation the positive root, in a form without cancellation
+    largest = 4.0 * mass / (damping + (damping * damping + 4.0 * stiffness * mass) ** 0.5)
+    largest = min([largest, *(time for _, time in terms)])
+    return float(brentq(excess, 0.0, largest)) if terms and excess(largest) > 0.0 else largest
 
 
 def _energy_change(depths: Numbers, forces: Numbers, mass: float, step: float) -> float:

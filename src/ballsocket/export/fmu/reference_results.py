@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from contextlib import nullcontext
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -100,7 +101,8 @@ def _integrate(
         return [*velocity, *acceleration, *turning, *internal_rates(load)]
 
     options = {"method": "LSODA", "rtol": _TOLERANCE, "atol": _TOLERANCE, "max_step": time[1]}
-    return solve_ivp(rates, (0.0, time[-1]), [*motion, *(0.0,) * count], t_eval=time, **options).y.T
+    with element.validity_monitor.paused() if isinstance(element, ForceElement) else nullcontext():
+        return solve_ivp(rates, (0.0, time[-1]), [*motion, *(0.0,) * count], t_eval=time, **options).y.T
 
 
 def load_at(element: ForceElement | PreloadedElement, state: Numbers) -> Any:
