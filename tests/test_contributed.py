@@ -174,8 +174,8 @@ screen = Screen(file=JointFile(joint=bs.joints["hip-28"], load={"force": 1000.0}
 worn = hip_of(screen.file, settings)
 assert (worn.wear.threshold, worn.creep.time, worn.creep.compliance) == (0.25, 60.0, 1e-3)
 fields = [control.field for control in Page("view=wear").view.controls(screen)]
-hidden = {field["name"]: field.get("hidden", False) for field in fields}
-assert (hidden["threshold"], hidden["creep_time"], hidden["circular"]) == (False, False, True)
+names = {field["name"] for field in fields if not field.get("hidden")}
+assert {"threshold", "creep_time"} <= names and "circular" not in names
 """
 ADDED = {
     "cycle": ("pendulum", "cycle_registry", "PENDULUM", "from .simulator_cycles", "    *IN_VIVO_CYCLES,\n"),

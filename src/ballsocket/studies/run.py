@@ -157,13 +157,9 @@ def study(
     if folder is None or not folder.exists():
         _check_space(task, folder)
     check_samples(task.design)
-    numbers = range(len(task.blocks))
     if folder is None:
-        results = {name: numpy.empty(task.design.shape, dtype=DTYPES[name]) for name in task.variables}
-        for number, block in _report_progress(engine.run(task, numbers), task, numbers, listen):
-            for name, values in block.items():
-                results[name][task.blocks[number]] = values
-        return make_dataset(task, results)
+        return make_dataset(task, _compute_in_memory(task, engine, listen))
+    numbers = range(len(task.blocks))
     study_store = StudyStore(task, folder)
     study_store.prepare()
     run = PieceRun(task, numbers, study_store)
@@ -246,6 +242,16 @@ def _axis_size(axis: Axis) -> int:
     """Return the size in bytes of the values along an axis, and of the cached samples."""
     cached = min(len(axis), CACHED_CHUNKS * CHUNK_SIZE) if isinstance(axis, SampleAxis) else 0
     return 8 * (len(axis) + cached) * len(axis.names)
+
+
+def _compute_in_memory(task: Task, engine: Engine, listen: Listener) -> dict[str, numpy.ndarray]:
+    """Compute all blocks; no block is held when this returns."""
+    arrays = {name: numpy.empty(task.design.shape, dtype=DTYPES[name]) for name in task.variables}
+    numbers = range(len(task.blocks))
+    for number, results in _report_progress(engine.run(task, numbers), task, numbers, listen):
+        for name, values in results.items():
+            arrays[name][task.blocks[number]] = values
+    return arrays
 
 
 def _report_progress(
