@@ -29,9 +29,9 @@ def main() -> None:
         folder = Path(name)
         run(folder, sys.executable, *PIP, "--no-deps", "--target", folder / "sdist", next(dist.glob("*.tar.gz")))
         try_out("sdist", sys.executable, folder, folder / "sdist")
-        run(folder, newest(), "-m", "venv", folder / "newest")
+        run(folder, "uv", "venv", "--quiet", "--python", newest(), folder / "newest")
         python = folder / "newest" / "bin" / "python"
-        run(folder, python, *PIP, next(dist.glob("*.whl")))
+        run(folder, "uv", "pip", "install", "--quiet", "--python", python, next(dist.glob("*.whl")))
         try_out("wheel", python, folder, folder / "newest")
 
 
